@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the merge works on, whoever delivers it: agents over LCM (mapweld serve) or recordings on disk (mapweld merge).
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/time.hpp"
+#include "core/geom/pose3.hpp"
+#include "core/place/descriptor.hpp"
+
+namespace mapweld::merge {
+
+struct Keyframe {
+  TimeNs t;
+  geom::Pose3 odom_T_body;
+  place::PlaceDescription place;
+  double path_m = 0;     // m travelled since the drive began
+  bool flushed = false;  // its submap is incomplete, because the drive ended
+};
+
+// One uninterrupted odometry: all poses in one gravity-aligned frame `odom` of its own. Keyframes in order, about 5 m apart.
+struct Drive {
+  std::string name;  // unique
+  std::vector<Keyframe> keyframes;
+};
+
+// Points of one submap in the level frame of its keyframe (core/submap/submap.hpp), one per occupied 0.5 m voxel.
+struct SubmapCloud {
+  std::vector<Eigen::Vector3f> points;
+};
+
+// Names one submap: index of the drive in the list given to the merge, index of the keyframe in the drive.
+struct SubmapKey {
+  int drive = 0;
+  int keyframe = 0;
+  auto operator<=>(const SubmapKey&) const = default;
+};
+
+// Where the merge gets submaps. Find returns null for one that has not arrived yet; the merge then goes on without it
+// and lists it as missing, so that the caller can fetch it and merge again.
+class SubmapSource {
+ public:
+  virtual ~SubmapSource() = default;
+  virtual const SubmapCloud* Find(SubmapKey key) = 0;
+};
+
+}  // namespace mapweld::merge
