@@ -6,7 +6,9 @@ namespace {
 AssertHandler g_handler = nullptr;
 }
 
-void SetAssertHandler(AssertHandler handler) { g_handler = handler; }
+void SetAssertHandler(AssertHandler handler) {
+  g_handler = handler;
+}
 
 void AssertFailed(const char* expression, const char* file, int line) {
   if (g_handler != nullptr) g_handler(expression, file, line);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vector with its storage inside: at most N elements, no heap. T must be trivially copyable.
+// A vector with its storage inside: at most N elements, no heap. Elements are never destroyed, only
+// overwritten, so T must be trivially destructible. Copies cost size(), not N.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -14,9 +16,18 @@ namespace mapweld {
 
 template <class T, std::size_t N>
 class FixedVector {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(std::is_trivially_destructible_v<T>);
 
  public:
+  FixedVector() = default;
+  FixedVector(const FixedVector& other) { *this = other; }
+  FixedVector& operator=(const FixedVector& other) {
+    if (this == &other) return *this;
+    std::copy(other.begin(), other.end(), items_.begin());
+    size_ = other.size_;
+    return *this;
+  }
+
   static constexpr std::size_t capacity() { return N; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }

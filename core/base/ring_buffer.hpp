@@ -13,7 +13,7 @@ namespace mapweld {
 
 template <class T, std::size_t N>
 class RingBuffer {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(std::is_trivially_destructible_v<T>);
 
  public:
   static constexpr std::size_t capacity() { return N; }

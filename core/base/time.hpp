@@ -19,10 +19,20 @@ struct TimeNs {
   constexpr auto operator<=>(const TimeNs&) const = default;
 };
 
-constexpr DurationNs operator-(TimeNs a, TimeNs b) { return {a.ns - b.ns}; }
-constexpr TimeNs operator+(TimeNs t, DurationNs d) { return {t.ns + d.ns}; }
-constexpr TimeNs operator-(TimeNs t, DurationNs d) { return {t.ns - d.ns}; }
-constexpr DurationNs Milliseconds(std::int64_t ms) { return {ms * 1'000'000}; }
-constexpr DurationNs FromSeconds(double s) { return {static_cast<std::int64_t>(s * 1e9)}; }
+constexpr DurationNs operator-(TimeNs a, TimeNs b) {
+  return {a.ns - b.ns};
+}
+constexpr TimeNs operator+(TimeNs t, DurationNs d) {
+  return {t.ns + d.ns};
+}
+constexpr TimeNs operator-(TimeNs t, DurationNs d) {
+  return {t.ns - d.ns};
+}
+constexpr DurationNs Milliseconds(std::int64_t ms) {
+  return {ms * 1'000'000};
+}
+constexpr DurationNs FromSeconds(double s) {
+  return {static_cast<std::int64_t>(s * 1e9)};
+}
 
 }  // namespace mapweld

@@ -16,7 +16,9 @@ struct Cell {
 inline constexpr std::int32_t kCellLimit = 1 << 20;  // cells run from -kCellLimit to kCellLimit - 1
 
 // The cell that holds coordinate v (in units of the cell's edge). v must be finite and within the limit.
-inline std::int32_t CellIndex(float v) { return static_cast<std::int32_t>(std::floor(v)); }
+inline std::int32_t CellIndex(float v) {
+  return static_cast<std::int32_t>(std::floor(v));
+}
 
 inline bool InLimits(const Cell& c) {
   return c.x >= -kCellLimit && c.x < kCellLimit && c.y >= -kCellLimit && c.y < kCellLimit && c.z >= -kCellLimit &&

@@ -8,22 +8,22 @@ namespace mapweld {
 
 struct Capacity {
   // sensor
-  std::size_t packet_points = 768;      // one LiDAR packet: VLP-16 dual return 2 x 384
-  std::size_t scan_points = 65536;      // one revolution before down-sampling
-  std::size_t scan_features = 8192;     // one revolution after down-sampling
-  std::size_t imu_ring = 1024;          // 2.5 s at 400 Hz
+  std::size_t packet_points = 768;   // one LiDAR packet: VLP-16 dual return 2 x 384
+  std::size_t scan_points = 65536;   // one revolution before down-sampling
+  std::size_t scan_features = 8192;  // one revolution after down-sampling
+  std::size_t imu_ring = 1024;       // 2.5 s at 400 Hz
   // maps
-  std::size_t lio_voxels = 65536;       // local map of the odometry
-  std::size_t submap_map_voxels = 262144;  // rolling dense map behind the submaps
-  std::size_t submap_points = 49152;    // one extracted submap
+  std::size_t lio_voxels = 65536;             // local map of the odometry
+  std::size_t submap_map_voxels = 262144;     // rolling dense map behind the submaps
+  std::size_t submap_points = 49152;          // one extracted submap
   std::size_t submap_encoded_bytes = 262144;  // one encoded submap
-  std::size_t pending_keyframes = 64;   // keyframes not yet released
+  std::size_t pending_keyframes = 64;         // keyframes not yet released
   // bus
-  std::size_t datagram_bytes = 1400;    // one LCM message of the agent, so that it never fragments
-  std::size_t request_queue = 256;      // submaps and keyframes asked for and not yet sent
-  std::size_t spool_records = 16384;    // keyframes and submaps of one drive kept for later requests
+  std::size_t datagram_bytes = 1400;  // one LCM message of the agent, so that it never fragments
+  std::size_t request_queue = 256;    // submaps and keyframes asked for and not yet sent
+  std::size_t spool_records = 16384;  // keyframes and submaps of one drive kept for later requests
   // correction
-  std::size_t correction_window = 16;   // keyframes in the local optimisation
+  std::size_t correction_window = 16;  // keyframes in the local optimisation
 };
 inline constexpr Capacity kCap{};
 

@@ -21,7 +21,9 @@ struct Pose3 {
   [[nodiscard]] Pose3 operator*(const Pose3& other) const { return {q * other.t + t, (q * other.q).normalized()}; }
   [[nodiscard]] Pose3 Inverse() const { return {-(q.conjugate() * t), q.conjugate()}; }
   // All numbers finite and the quaternion of unit length within 1e-3.
-  [[nodiscard]] bool IsValid() const { return t.allFinite() && q.coeffs().allFinite() && std::abs(q.norm() - 1) < 1e-3; }
+  [[nodiscard]] bool IsValid() const {
+    return t.allFinite() && q.coeffs().allFinite() && std::abs(q.norm() - 1) < 1e-3;
+  }
 };
 
 // Right perturbation on R^3 x SO(3): (t + q * d[0:3], q * Exp(d[3:6])).

@@ -47,6 +47,8 @@ double Yaw(const Quatd& q) {
   return std::atan2(2 * (q.w() * q.z() + q.x() * q.y()), 1 - 2 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-Quatd RotationBetween(const Vec3d& from, const Vec3d& to) { return Quatd::FromTwoVectors(from, to); }
+Quatd RotationBetween(const Vec3d& from, const Vec3d& to) {
+  return Quatd::FromTwoVectors(from, to);
+}
 
 }  // namespace mapweld::geom

@@ -83,7 +83,8 @@ Status RollingMap::Extract(const geom::Pose3& odom_T_body, double path_m, Submap
     const Cell cell = UnpackCell(voxel.key);
     const double to_m = static_cast<double>(config_.voxel_m);
     const double per_count = 1.0 / (static_cast<double>(kOffsetSteps) * voxel.count);
-    const Eigen::Vector3d mean_odom((cell.x + voxel.sum[0] * per_count) * to_m, (cell.y + voxel.sum[1] * per_count) * to_m,
+    const Eigen::Vector3d mean_odom((cell.x + voxel.sum[0] * per_count) * to_m,
+                                    (cell.y + voxel.sum[1] * per_count) * to_m,
                                     (cell.z + voxel.sum[2] * per_count) * to_m);
     if ((mean_odom - odom_T_body.t).squaredNorm() > radius_squared) continue;
     const Eigen::Vector3f p = (level_R_odom * mean_odom + level_T_odom.t).cast<float>();

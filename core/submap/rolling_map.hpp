@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything the vehicle saw on the last stretch of its path, as 0.5 m voxels in the odom frame. Submaps are cut from it.
+// Everything the vehicle saw on the last stretch of its path, as 0.5 m voxels in the odom frame. Submaps are cut from
+// it.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ namespace mapweld::submap {
 
 struct RollingMapConfig {
   float voxel_m = 0.5F;
-  float radius_m = 50.0F;       // of a submap; at most 127 voxels
-  double reach_m = 130.0;       // a voxel belongs to a keyframe if it was last seen within this much path of it
+  float radius_m = 50.0F;  // of a submap; at most 127 voxels
+  double reach_m = 130.0;  // a voxel belongs to a keyframe if it was last seen within this much path of it
 };
 
 // A set-associative hash table: kCap.submap_map_voxels slots of 32 bytes (8.4 MB), 8 to a bucket. When a bucket is full
@@ -38,10 +39,10 @@ class RollingMap {
   static constexpr std::size_t kWays = 8;
   static constexpr std::size_t kBuckets = kCap.submap_map_voxels / kWays;
   struct Voxel {
-    std::uint64_t key = 0;             // packed cell + 1; 0 = free
+    std::uint64_t key = 0;              // packed cell + 1; 0 = free
     std::array<std::int32_t, 3> sum{};  // of the offsets inside the cell, 1/1024 of its edge
     std::uint32_t count = 0;
-    std::uint32_t seen_dm = 0;         // path at the last sight, decimetres
+    std::uint32_t seen_dm = 0;  // path at the last sight, decimetres
   };
   static_assert(sizeof(Voxel) == 32);
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/lio/scan_match.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mapweld::lio {
+
+ScanMatch MatchScan(const scan::FeaturePoints& features, const geom::Pose3& odom_T_body, double gate_m,
+                    const ScanMatchConfig& config, VoxelMap* map) {
+  const Eigen::Matrix3f rotation = odom_T_body.q.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = odom_T_body.t.cast<float>();
+  ScanMatch match;
+  for (const scan::BodyPoint& feature : features) {
+    const Eigen::Vector3f p_odom = rotation * feature.p + translation;
+    Plane plane;
+    if (!map->FindPlane(p_odom, &plane)) continue;
+    ++match.matched;
+    const double residual = static_cast<double>(plane.normal.dot(p_odom - plane.mean));
+    const double variance = config.range_sigma_m * config.range_sigma_m + static_cast<double>(plane.variance);
+    const double sigma = std::sqrt(variance);
+    const double gate = std::max({gate_m, config.gate_sigma * sigma, config.min_gate_m});
+    if (std::abs(residual) > gate) continue;
+    ++match.inliers;
+    match.residual_sq_sum += residual * residual;
+
+    // d(R p)/d rotation = -R [p]x, so its row against n is (p x R'n)'.
+    const Eigen::Vector3f normal_body = rotation.transpose() * plane.normal;
+    geom::Vec6d row;
+    row.head<3>() = plane.normal.cast<double>();
+    row.tail<3>() = feature.p.cross(normal_body).cast<double>();
+    const double huber = std::abs(residual) <= 1.5 * sigma ? 1.0 : 1.5 * sigma / std::abs(residual);
+    const double weight = huber / (variance * config.correlation);
+    match.information.noalias() += (weight * row) * row.transpose();
+    match.gradient.noalias() += (weight * residual) * row;
+  }
+  return match;
+}
+
+}  // namespace mapweld::lio

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/agent_pipeline.hpp"
+
+#include "core/submap/submap_codec.hpp"
+
+namespace mapweld::pipeline {
+
+AgentPipeline::AgentPipeline(const AgentConfig& config, AgentSink* sink)
+    : config_(config), sink_(sink), lio_(config.lio), rolling_map_(config.submap), correction_(config.correction) {
+  // Keyframes wait for release_distance_m of travel: the ring must hold them all.
+  MAPWELD_ASSERT(config.release_distance_m / config.keyframe_spacing_m + 2 <
+                 static_cast<double>(kCap.pending_keyframes));
+}
+
+void AgentPipeline::OnImu(const sensor::ImuSample& sample) {
+  if (lio_.AddImu(sample) != Status::kOk) ++counters_.imu_refused;
+  ProcessWaitingScan();
+}
+
+void AgentPipeline::OnPacket(const sensor::LidarPacket& packet) {
+  // A scan that is still waiting while the next one is half full will not get its IMU samples any more.
+  if (scan_waits_ && packet.t - waiting_scan_.t_end > config_.imu_patience) {
+    scan_waits_ = false;
+    OnScan(waiting_scan_);
+  }
+  bool has_scan = false;
+  if (accumulator_.Add(packet, &waiting_scan_, &has_scan) == Status::kStale) ++counters_.packets_stale;
+  if (!has_scan) return;
+  scan_waits_ = true;
+  ProcessWaitingScan();
+}
+
+void AgentPipeline::OnDriveEnd() {
+  if (scan_waits_) OnScan(waiting_scan_);
+  scan_waits_ = false;
+  if (accumulator_.Flush(&waiting_scan_)) OnScan(waiting_scan_);
+  ReleaseKeyframes(true);
+}
+
+void AgentPipeline::ProcessWaitingScan() {
+  if (!scan_waits_ || lio_.newest_imu() < waiting_scan_.t_end) return;
+  scan_waits_ = false;
+  OnScan(waiting_scan_);
+}
+
+void AgentPipeline::OnScan(const sensor::Scan& scan) {
+  lio::LioUpdate update;
+  if (lio_.AddScan(scan, &update) != Status::kOk) {
+    ++counters_.scans_dropped;
+    return;
+  }
+  ++counters_.scans;
+  if (has_pose_) path_m_ += (update.odom_T_body.t - last_odom_T_body_.t).norm();
+  last_odom_T_body_ = update.odom_T_body;
+  has_pose_ = true;
+
+  FeedSubmaps();
+  TakeKeyframeIfDue(update);
+  ReleaseKeyframes(false);
+
+  PoseOutput pose{update, path_m_, correction_.group(), update.odom_T_body};
+  if (correction_.active()) pose.merged_T_body = correction_.MergedFromOdom(update.t) * update.odom_T_body;
+  sink_->OnPose(pose);
+}
+
+void AgentPipeline::FeedSubmaps() {
+  const Eigen::Matrix3f rotation = last_odom_T_body_.q.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = last_odom_T_body_.t.cast<float>();
+  const float max_squared = config_.submap_range_m * config_.submap_range_m;
+  for (const scan::BodyPoint& point : lio_.body_points()) {
+    if (point.p.squaredNorm() > max_squared) continue;
+    (void)rolling_map_.Insert(rotation * point.p + translation, path_m_);  // out of the grid after 500 km: not mapped
+  }
+}
+
+void AgentPipeline::TakeKeyframeIfDue(const lio::LioUpdate& update) {
+  if (path_m_ < next_keyframe_path_m_) return;
+  pending_.Push({next_keyframe_, update.t, update.odom_T_body, path_m_});
+  correction_.AddKeyframe(next_keyframe_, update.odom_T_body);
+  ++next_keyframe_;
+  next_keyframe_path_m_ = path_m_ + config_.keyframe_spacing_m;
+}
+
+void AgentPipeline::ReleaseKeyframes(bool all) {
+  while (!pending_.empty()) {
+    const bool complete = path_m_ - pending_.front().path_m >= config_.release_distance_m;
+    if (!complete && !all) return;
+    Release(pending_.front(), !complete);
+    pending_.PopFront();
+  }
+}
+
+void AgentPipeline::Release(const PendingKeyframe& pending, bool flushed) {
+  KeyframeOutput out;
+  out.index = pending.index;
+  out.t = pending.t;
+  out.odom_T_body = pending.odom_T_body;
+  out.path_m = pending.path_m;
+  out.flushed = flushed;
+
+  submap_.keyframe = pending.index;
+  submap_.t = pending.t;
+  submap_.flushed = flushed;
+  if (rolling_map_.Extract(pending.odom_T_body, pending.path_m, &submap_) != Status::kOk) ++counters_.submaps_truncated;
+  out.submap_points = submap_.points.size();
+  if (describer_.Describe(submap_, &out.place) != Status::kOk) {
+    ++counters_.undescribed;
+    out.place = {};
+  }
+  const Result<std::size_t> bytes = submap::EncodeSubmap(submap_, encoded_);
+  if (bytes.ok()) out.encoded = {encoded_.data(), bytes.value()};
+  ++counters_.keyframes;
+  sink_->OnKeyframe(out);
+}
+
+}  // namespace mapweld::pipeline
