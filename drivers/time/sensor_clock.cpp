@@ -31,17 +31,22 @@ TimeNs SensorClock::Nearest(std::uint64_t ticks, TimeNs to) const {
 
 void SensorClock::Start(std::uint64_t ticks, TimeNs receive) {
   const TimeNs before = sensor_ + offset_;
+  const DurationNs silence = std::max(receive - last_receive_, DurationNs{0});
+  sensor_ = {static_cast<std::int64_t>(ticks) * options_.tick_ns};
   if (options_.mode == ClockMode::kReceive) {
-    sensor_ = {static_cast<std::int64_t>(ticks) * options_.tick_ns};
-    offset_ = receive - sensor_;
     // After a restart of the sensor time goes on from where it was, even if the receive stamp was early.
-    if (started_) offset_ = std::max(receive, before) - sensor_;
-  } else if (anchored_) {
-    sensor_ = Nearest(ticks, anchor_);
+    offset_ = started_ ? std::max(receive, before) - sensor_ : receive - sensor_;
+  } else if (!started_) {
+    if (anchored_) sensor_ = Nearest(ticks, anchor_);
   } else {
-    sensor_ = {static_cast<std::int64_t>(ticks) * options_.tick_ns};
-    const std::int64_t turn = static_cast<std::int64_t>(options_.wrap_ticks) * options_.tick_ns;
-    if (started_ && sensor_ < before) sensor_.ns += ((before.ns - sensor_.ns + turn - 1) / turn) * turn;
+    // The sensor may still be synchronised, with another turn count; if no turn fits, bridge by the receive clock.
+    const TimeNs target = anchored_ ? anchor_ : before + silence;
+    const TimeNs congruent = Nearest(ticks, target - offset_);
+    if (Abs(congruent + offset_ - target) <= kJump) {
+      sensor_ = congruent;
+    } else {
+      offset_ = target - sensor_;
+    }
   }
   settled_ = {0};
   started_ = true;
