@@ -14,6 +14,24 @@ fs::path Normalized(const fs::path& folder) {
   return full.has_filename() ? full : full.parent_path();  // "run1/" and "." included
 }
 
+std::string SafeFileName(std::string safe) {
+  for (char& c : safe) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '/' || c == '\\' || u <= ' ' || u == 0x7F) c = '_';
+  }
+  if (safe.empty() || safe.front() == '.') safe.insert(0, 1, '_');
+  return safe;
+}
+
+void NumberDoubles(std::vector<std::string>* names) {
+  std::set<std::string> taken;
+  for (std::string& name : *names) {
+    std::string candidate = name;
+    for (int n = 2; !taken.insert(candidate).second; ++n) candidate = name + '_' + std::to_string(n);
+    name = candidate;
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> UniqueNames(const std::vector<fs::path>& folders) {
@@ -29,22 +47,14 @@ std::vector<std::string> UniqueNames(const std::vector<fs::path>& folders) {
     const std::string parent = Normalized(folders[i]).parent_path().filename().string();
     if (uses[names[i]] > 1 && !parent.empty()) names[i] = parent + '_' + names[i];
   }
-  std::set<std::string> taken;
-  for (std::string& name : names) {
-    std::string candidate = name;
-    for (int n = 2; !taken.insert(candidate).second; ++n) candidate = name + '_' + std::to_string(n);
-    name = candidate;
-  }
+  NumberDoubles(&names);
   return names;
 }
 
-std::string FileNameOf(const std::string& name) {
-  std::string safe = name;
-  for (char& c : safe) {
-    const auto u = static_cast<unsigned char>(c);
-    if (c == '/' || c == '\\' || u <= ' ' || u == 0x7F) c = '_';
-  }
-  if (safe.empty() || safe.front() == '.') safe.insert(0, 1, '_');
+std::vector<std::string> UniqueFileNames(const std::vector<std::string>& names) {
+  std::vector<std::string> safe;
+  for (const std::string& name : names) safe.push_back(SafeFileName(name));
+  NumberDoubles(&safe);
   return safe;
 }
 

@@ -13,7 +13,8 @@ namespace mapweld::io {
 // given.
 std::vector<std::string> UniqueNames(const std::vector<std::filesystem::path>& folders);
 
-// Makes any name safe as a file name: slashes, blanks and control characters become underscores.
-std::string FileNameOf(const std::string& name);
+// File names for things that have names: slashes, blanks and control characters become underscores, doubles get
+// numbers.
+std::vector<std::string> UniqueFileNames(const std::vector<std::string>& names);
 
 }  // namespace mapweld::io
