@@ -10,7 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path Normalized(const fs::path& folder) {
-  const fs::path full = fs::absolute(folder).lexically_normal();
+  const fs::path full = fs::absolute(folder.empty() ? fs::path(".") : folder).lexically_normal();
   return full.has_filename() ? full : full.parent_path();  // "run1/" and "." included
 }
 
