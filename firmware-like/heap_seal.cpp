@@ -18,9 +18,13 @@ void SealHeap(bool abort_on_call) {
   g_sealed.store(true);
 }
 
-std::int64_t HeapCallsAfterSeal() { return g_watched.load() ? g_calls.load() : -1; }
+std::int64_t HeapCallsAfterSeal() {
+  return g_watched.load() ? g_calls.load() : -1;
+}
 
-void WatchHeap() { g_watched.store(true); }
+void WatchHeap() {
+  g_watched.store(true);
+}
 
 void NoteHeapCall() {
   if (!g_sealed.load(std::memory_order_relaxed)) return;

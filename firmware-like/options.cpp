@@ -99,30 +99,41 @@ bool Apply(int id, const char* value, Options* options) {
       if (!ParseNumber(value, 1, 32767, &number)) return false;
       options->agent_id = static_cast<int>(number);
       return true;
-    case kStateDir: options->state_dir = value; return true;
-    case kCan: options->can_interface = value; return true;
-    case kCandump: options->candump_path = value; return true;
+    case kStateDir:
+      options->state_dir = value;
+      return true;
+    case kCan:
+      options->can_interface = value;
+      return true;
+    case kCandump:
+      options->candump_path = value;
+      return true;
     case kLidarPort:
       if (!ParseNumber(value, 1, 65535, &number)) return false;
       options->lidar_port = static_cast<std::uint16_t>(number);
       return true;
-    case kLcmUrl: options->lcm_url = value; return true;
+    case kLcmUrl:
+      options->lcm_url = value;
+      return true;
     case kTime:
       if (std::strcmp(value, "shared") != 0 && std::strcmp(value, "receive") != 0) return false;
       options->time_source = value[0] == 's' ? TimeSource::kShared : TimeSource::kReceive;
       return true;
-    case kLidarAt: return ParsePose(value, &options->agent.lio.body_T_lidar);
+    case kLidarAt:
+      return ParsePose(value, &options->agent.lio.body_T_lidar);
     case kSpoolMib:
       if (!ParseNumber(value, 1, 1 << 20, &number)) return false;
       options->spool_bytes = number << 20;
       return true;
-    case kAnswerRate: return ParseNumber(value, 2000, 1'000'000'000, &options->answer_bytes_per_s);
+    case kAnswerRate:
+      return ParseNumber(value, 2000, 1'000'000'000, &options->answer_bytes_per_s);
     case kIndoor:
       options->agent.submap.radius_m = 20.0F;
       options->agent.submap.reach_m = 60.0;
       options->agent.release_distance_m = 40.0;
       return true;
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -148,8 +159,8 @@ ParsedOptions ParseOptions(int argc, char** argv) {
       return parsed;
     }
     if (!Apply(id, optarg, &parsed.options)) {
-      std::snprintf(parsed.message, sizeof(parsed.message), "--%s does not accept '%s' (see --help)", kOptions[index].name,
-                    optarg);
+      std::snprintf(parsed.message, sizeof(parsed.message), "--%s does not accept '%s' (see --help)",
+                    kOptions[index].name, optarg);
       return parsed;
     }
   }
