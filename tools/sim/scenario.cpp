@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace mapweld::sim {
+namespace {
+
+using nlohmann::json;
+
+class Fields {
+ public:
+  Fields(const json& object, std::string where, std::initializer_list<const char*> known)
+      : object_(object), where_(std::move(where)) {
+    if (!object.is_object()) throw std::runtime_error(fmt::format("{}: expected an object in braces", where_));
+    for (const auto& item : object.items()) {
+      if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
+        throw std::runtime_error(
+            fmt::format("{}: unknown key '{}'; known are {}", where_, item.key(), fmt::join(known, ", ")));
+      }
+    }
+  }
+  template <typename T>
+  [[nodiscard]] T Get(const char* key) const {
+    const auto found = object_.find(key);
+    if (found == object_.end()) throw std::runtime_error(fmt::format("{}: key '{}' is missing", where_, key));
+    try {
+      return found->get<T>();
+    } catch (const json::exception& e) {
+      throw std::runtime_error(fmt::format("{}: key '{}' has the wrong kind of value ({})", where_, key, e.what()));
+    }
+  }
+  [[nodiscard]] bool Has(const char* key) const { return object_.contains(key); }
+  [[nodiscard]] GeoPoint Point(const std::array<double, 2>& lat_lon) const {
+    if (!(std::abs(lat_lon[0]) <= 85) || !(std::abs(lat_lon[1]) <= 180)) {
+      throw std::runtime_error(
+          fmt::format("{}: ({}, {}) is no [latitude, longitude] in degrees", where_, lat_lon[0], lat_lon[1]));
+    }
+    return {lat_lon[0], lat_lon[1]};
+  }
+
+ private:
+  const json& object_;
+  std::string where_;
+};
+
+VehiclePlan ReadVehicle(const json& object, const std::string& where) {
+  const Fields fields(object, where, {"id", "about", "route"});
+  VehiclePlan plan;
+  plan.id = fields.Get<int>("id");
+  if (plan.id < 1 || plan.id > 32767) {
+    throw std::runtime_error(fmt::format("{}: id {} is outside 1..32767", where, plan.id));
+  }
+  for (const auto& point : fields.Get<std::vector<std::array<double, 2>>>("route")) {
+    plan.waypoints.push_back(fields.Point(point));
+  }
+  return plan;
+}
+
+}  // namespace
+
+Scenario ReadScenario(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(fmt::format("cannot open scenario {}", file.string()));
+  json document;
+  try {
+    document = json::parse(stream);
+  } catch (const json::exception& e) {
+    throw std::runtime_error(fmt::format("scenario {} is no valid JSON: {}", file.string(), e.what()));
+  }
+  const std::string where = "scenario " + file.string();
+  const Fields fields(document, where, {"name", "about", "town", "origin", "seed", "vehicles"});
+  Scenario scenario;
+  scenario.name = fields.Get<std::string>("name");
+  scenario.town = file.parent_path() / fields.Get<std::string>("town");
+  scenario.origin = fields.Point(fields.Get<std::array<double, 2>>("origin"));
+  if (fields.Has("seed")) scenario.seed = fields.Get<std::uint64_t>("seed");
+  const auto vehicles = fields.Get<std::vector<json>>("vehicles");
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    scenario.vehicles.push_back(ReadVehicle(vehicles[i], fmt::format("{}, vehicle number {}", where, i + 1)));
+  }
+  if (scenario.vehicles.empty()) throw std::runtime_error(fmt::format("{}: 'vehicles' is empty", where));
+  std::sort(scenario.vehicles.begin(), scenario.vehicles.end(),
+            [](const VehiclePlan& a, const VehiclePlan& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < scenario.vehicles.size(); ++i) {
+    if (scenario.vehicles[i].id == scenario.vehicles[i - 1].id) {
+      throw std::runtime_error(fmt::format("{}: two vehicles have id {}", where, scenario.vehicles[i].id));
+    }
+  }
+  return scenario;
+}
+
+std::filesystem::path DemoScenario() {
+  constexpr const char* kName = "four_drives.json";
+  // Installed: <prefix>/bin/mapweld and <prefix>/share/mapweld/sim. In the build tree: the source folder.
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const auto installed = program.parent_path().parent_path() / "share/mapweld/sim" / kName;
+    if (std::filesystem::exists(installed, error)) return installed;
+  }
+  return std::filesystem::path(MAPWELD_SIM_DATA_DIR) / kName;
+}
+
+}  // namespace mapweld::sim

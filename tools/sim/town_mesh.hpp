@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The town as triangles, one mesh per kind of surface. World frame, metres; roads lie at z = 0.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tools/sim/osm_town.hpp"
+#include "tools/sim/surface.hpp"
+
+namespace mapweld::sim {
+
+struct Mesh {
+  using Triangle = std::array<std::uint32_t, 3>;
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Triangle> triangles;
+
+  // A flat four-cornered face is always two triangles in a row.
+  void AddQuad(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d);
+  // Walls around `base` from z_low to z_high.
+  void AddWalls(const Polyline& base, double z_low, double z_high);
+  // A horizontal face over a counter-clockwise polygon.
+  void AddFace(const Polyline& base, double z);
+};
+
+using TownMesh = std::array<Mesh, kSurfaces>;
+inline Mesh& Of(TownMesh& mesh, Surface surface) {
+  return mesh[static_cast<std::size_t>(surface)];
+}
+inline const Mesh& Of(const TownMesh& mesh, Surface surface) {
+  return mesh[static_cast<std::size_t>(surface)];
+}
+
+// Corners of a rectangle around `centre`, counter-clockwise; `along` is of unit length.
+Polyline Rectangle(const Vec2d& centre, const Vec2d& along, double half_length, double half_width);
+
+// Everything within `area`: ground, roads, buildings, barriers, trees and the roadside of roadside.hpp. Depends on the
+// town and the area only.
+TownMesh BuildTownMesh(const Town& town, const Box2& area);
+
+}  // namespace mapweld::sim
