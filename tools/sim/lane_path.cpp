@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sim/lane_path.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -58,6 +59,22 @@ Polyline LimitCurvature(Polyline line, double min_radius_m) {
   return Resample(line, kStep_m);
 }
 
+// What a driver does with his lane: he flattens every bend as far as half a metre to either side allows.
+Polyline UseTheLane(Polyline line) {
+  constexpr double kComfortableRadius_m = 40;
+  constexpr double kMaxShift_m = 0.45;
+  constexpr int kRounds = 2000;
+  const Polyline middle = line;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+      if (std::abs(CurvatureOf(line[i - 1], line[i], line[i + 1])) <= 1 / kComfortableRadius_m) continue;
+      const Vec2d shift = 0.5 * line[i] + 0.25 * (line[i - 1] + line[i + 1]) - middle[i];
+      line[i] = middle[i] + shift * std::min(1.0, kMaxShift_m / std::max(shift.norm(), 1e-9));
+    }
+  }
+  return Resample(line, kStep_m);
+}
+
 Vec2d Along(const Polyline& line, std::size_t i) {
   return (line[std::min(i + 1, line.size() - 1)] - line[i == 0 ? 0 : i - 1]).normalized();
 }
@@ -76,7 +93,7 @@ Polyline LaneLine(const Polyline& centreline) {
   Polyline line = Smooth(Resample(centreline, kStep_m), 1.0);
   line = LimitCurvature(line, 4.0);
   line = Resample(ToTheRight(line, LanePath::kLaneOffset_m), kStep_m);
-  line = LimitCurvature(line, LanePath::kMinRadius_m);
+  line = UseTheLane(LimitCurvature(line, LanePath::kMinRadius_m));
   return Resample(Smooth(line, 1.5), kStep_m);
 }
 
