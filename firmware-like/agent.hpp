@@ -25,7 +25,7 @@ namespace mapweld::executive {
 enum class Mode : std::int8_t { kBoot = 0, kAlign = 1, kRun = 2, kDegraded = 3, kEnded = 4 };
 
 // Some 30 MB: lives in AgentMemory only.
-class Agent : private pipeline::AgentSink {
+class Agent final : private pipeline::AgentSink {
  public:
   Agent(const Options& options, std::int32_t epoch);
   ~Agent();

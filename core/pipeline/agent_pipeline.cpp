@@ -78,7 +78,7 @@ void AgentPipeline::TakeKeyframeIfDue(const lio::LioUpdate& update) {
   pending_.Push({next_keyframe_, update.t, update.odom_T_body, path_m_});
   correction_.AddKeyframe(next_keyframe_, update.odom_T_body);
   ++next_keyframe_;
-  next_keyframe_path_m_ = path_m_ + config_.keyframe_spacing_m;
+  next_keyframe_path_m_ += config_.keyframe_spacing_m;
 }
 
 void AgentPipeline::ReleaseKeyframes(bool all) {
