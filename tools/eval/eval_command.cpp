@@ -47,8 +47,8 @@ std::vector<Vehicle> LoadVehicles(const std::vector<fs::path>& truth, const std:
   const std::vector<std::string> names = io::UniqueNames(without_extension);
   std::vector<Vehicle> group;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const io::Trajectory t = io::ReadTrajectory(truth[i]);
-    const io::Trajectory e = io::ReadTrajectory(estimate[i]);
+    const io::Trajectory t = io::ReadTrajectory(truth[i], io::PoseUse::kPositions);
+    const io::Trajectory e = io::ReadTrajectory(estimate[i], io::PoseUse::kPositions);
     const bool by_line = t.times.empty() && e.times.empty();
     if (t.times.empty() != e.times.empty()) {
       throw std::runtime_error(fmt::format("{} has times and {} has none; give both as TUM or both as KITTI rows",

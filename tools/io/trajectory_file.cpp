@@ -9,7 +9,6 @@
 
 #include "tools/io/kitti.hpp"
 #include "tools/io/text_rows.hpp"
-#include "tools/io/tum.hpp"
 
 namespace mapweld::io {
 namespace {
@@ -53,7 +52,7 @@ fs::path FindTrajectory(const fs::path& recording) {
                   recording.string()));
 }
 
-Trajectory ReadTrajectory(const fs::path& path) {
+Trajectory ReadTrajectory(const fs::path& path, PoseUse use) {
   std::size_t columns = 0;
   {
     const TextRows file(path);
@@ -69,7 +68,7 @@ Trajectory ReadTrajectory(const fs::path& path) {
   }
   if (columns == 12) return {path, ReadKittiPoses(path), {}};
   Trajectory trajectory{path, {}, {}};
-  for (const StampedPose& row : ReadTum(path)) {
+  for (const StampedPose& row : ReadTum(path, use)) {
     trajectory.times.push_back(row.t);
     trajectory.world_T_lidar.push_back(row.world_T_body);
   }

@@ -8,6 +8,7 @@
 
 #include "core/base/time.hpp"
 #include "core/geom/pose3.hpp"
+#include "tools/io/tum.hpp"
 
 namespace mapweld::io {
 
@@ -23,6 +24,6 @@ struct Trajectory {
 std::filesystem::path FindTrajectory(const std::filesystem::path& recording);
 
 // Rows of 12 numbers are KITTI's, rows of 8 are TUM's. Throws with file and line for anything else.
-Trajectory ReadTrajectory(const std::filesystem::path& path);
+Trajectory ReadTrajectory(const std::filesystem::path& path, PoseUse use = PoseUse::kWhole);
 
 }  // namespace mapweld::io

@@ -8,7 +8,7 @@
 
 namespace mapweld::io {
 
-std::vector<StampedPose> ReadTum(const std::filesystem::path& path) {
+std::vector<StampedPose> ReadTum(const std::filesystem::path& path, PoseUse use) {
   const TextRows file(path);
   std::vector<StampedPose> trajectory;
   trajectory.reserve(file.rows().size());
@@ -16,9 +16,12 @@ std::vector<StampedPose> ReadTum(const std::filesystem::path& path) {
     file.ExpectColumns(row, 8, "time x y z qx qy qz qw");
     double v[8] = {};
     for (std::size_t i = 1; i < 8; ++i) v[i] = file.Number(row, i);
-    const geom::Quatd q(v[7], v[4], v[5], v[6]);
+    geom::Quatd q(v[7], v[4], v[5], v[6]);
     if (std::abs(q.norm() - 1) > 0.1) {
-      file.Fail(row, fmt::format("the quaternion has length {:.3f} instead of 1; write it as qx qy qz qw", q.norm()));
+      if (use == PoseUse::kWhole) {
+        file.Fail(row, fmt::format("the quaternion has length {:.3f} instead of 1; write it as qx qy qz qw", q.norm()));
+      }
+      q = geom::Quatd::Identity();
     }
     trajectory.push_back({file.Seconds(row, 0), {{v[1], v[2], v[3]}, q.normalized()}});
     if (trajectory.size() > 1 && trajectory.back().t <= trajectory[trajectory.size() - 2].t) {

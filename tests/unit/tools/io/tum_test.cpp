@@ -38,5 +38,16 @@ TEST(Tum, NamesTheLineThatIsWrong) {
   EXPECT_THAT(error("soon 0 0 0 0 0 0 1\n"), HasSubstr("a.tum:3: 'soon' is not a time"));
 }
 
+TEST(Tum, ReadsPositionsWhereRotationsAreNone) {
+  const test::TempFolder folder;
+  const auto path = folder.Put("a.tum", "1 5 6 7 0 0 0 0\n2 8 9 10 0.1 0.2 -1.4 0\n3 1 1 1 0 0 1 0\n");
+  EXPECT_THAT(test::ErrorOf([&] { (void)ReadTum(path); }), HasSubstr("a.tum:1: the quaternion"));
+  const auto trajectory = ReadTum(path, PoseUse::kPositions);
+  ASSERT_EQ(trajectory.size(), 3U);
+  EXPECT_EQ(trajectory[1].world_T_body.t, geom::Vec3d(8, 9, 10));
+  EXPECT_TRUE(trajectory[1].world_T_body.IsValid());
+  EXPECT_EQ(trajectory[2].world_T_body.q.z(), 1);
+}
+
 }  // namespace
 }  // namespace mapweld::io
