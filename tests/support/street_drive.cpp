@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/street_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/voxel_key.hpp"
+
+namespace mapweld::test {
+namespace {
+
+constexpr double kPacketS = 0.1 / 75;
+constexpr int kColumnsPerPacket = 24;
+constexpr int kBeams = 16;
+constexpr double kRampMs2 = 1.5;
+constexpr double kWaveLengthM = 60;
+const geom::Pose3 kBodyTLidar{{0.10, 0.0, 0.35}, geom::Quatd::Identity()};
+
+double PathLength(double t_s, const StreetDriveConfig& config) {
+  const double t = std::max(0.0, t_s - config.rest_s);
+  const double ramp = config.speed_m_s / kRampMs2;
+  // A smooth start: acceleration follows half a sine.
+  if (t >= ramp) return 0.5 * config.speed_m_s * ramp + config.speed_m_s * (t - ramp);
+  return 0.5 * config.speed_m_s * (t - ramp / std::numbers::pi * std::sin(std::numbers::pi * t / ramp));
+}
+
+}  // namespace
+
+StreetDrive::StreetDrive(const StreetDriveConfig& config) : config_(config) {
+  (void)boxes_.TryPush({{-200, -200, -1.9F}, {600, 200, -1.85F}});  // ground
+  if (config.corridor) {
+    (void)boxes_.TryPush({{-200, 6, -1.9F}, {600, 7, 8}});
+    (void)boxes_.TryPush({{-200, -7, -1.9F}, {600, -6, 8}});
+    return;
+  }
+  for (int i = -8; i < 40; ++i) {
+    for (const float side : {-1.0F, 1.0F}) {
+      const std::uint64_t h = HashKey(static_cast<std::uint64_t>(i + 100) * 2 + (side > 0 ? 1 : 0));
+      const float depth = 8.0F + static_cast<float>(h % 5);
+      const float x = static_cast<float>(i) * 14.0F + static_cast<float>((h >> 8U) % 4);
+      const float height = 4.0F + static_cast<float>((h >> 16U) % 8);
+      const float near = side * depth;
+      const float far = side * (depth + 9);
+      (void)boxes_.TryPush({{x, std::min(near, far), -1.9F}, {x + 9, std::max(near, far), height}});
+      const float pole = x + 11;
+      (void)boxes_.TryPush({{pole, side * 5.5F - 0.15F, -1.9F}, {pole + 0.3F, side * 5.5F + 0.15F, 4}});
+    }
+  }
+}
+
+geom::Pose3 StreetDrive::World(double t_s) const {
+  const double s = PathLength(t_s, config_);
+  const double k = 2 * std::numbers::pi / kWaveLengthM;
+  geom::Pose3 pose;
+  pose.t = {s, config_.weave_m * std::sin(k * s), 0};
+  pose.q = Eigen::AngleAxisd(std::atan(config_.weave_m * k * std::cos(k * s)), geom::Vec3d::UnitZ());
+  return pose;
+}
+
+geom::Pose3 StreetDrive::TruthAt(TimeNs t) const {
+  return World(0).Inverse() * World(static_cast<double>(t.ns) * 1e-9);
+}
+
+double StreetDrive::PathAt(TimeNs t) const {
+  return PathLength(static_cast<double>(t.ns) * 1e-9, config_);
+}
+
+sensor::ImuSample StreetDrive::Imu(double t_s) {
+  constexpr double h = 1e-3;
+  const geom::Pose3 before = World(t_s - h);
+  const geom::Pose3 now = World(t_s);
+  const geom::Pose3 after = World(t_s + h);
+  sensor::ImuSample sample;
+  sample.t = FromSeconds(t_s).ns >= 0 ? TimeNs{FromSeconds(t_s).ns} : TimeNs{};
+  sample.gyro_body = geom::LogSo3((before.q.conjugate() * after.q).normalized()) / (2 * h);
+  sample.accel_body = now.q.conjugate() * ((after.t - 2 * now.t + before.t) / (h * h) + geom::Vec3d(0, 0, 9.81));
+  sample.gyro_body.z() += config_.gyro_bias_z + 0.002 * Noise();
+  sample.accel_body.x() += config_.accel_bias_x + 0.02 * Noise();
+  return sample;
+}
+
+double StreetDrive::Noise() {  // near-Gaussian: the sum of four uniform numbers
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    noise_state_ = HashKey(noise_state_ + 0x9E3779B97F4A7C15U);
+    sum += static_cast<double>(noise_state_ >> 11U) * 0x1p-53 - 0.5;
+  }
+  return sum * std::sqrt(3.0);
+}
+
+float StreetDrive::Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const {
+  float nearest = 100;
+  for (const Box& box : boxes_) {
+    float enter = 0;
+    float leave = nearest;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float inverse = 1.0F / direction(axis);
+      const float a = (box.low(axis) - from(axis)) * inverse;
+      const float b = (box.high(axis) - from(axis)) * inverse;
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (enter < leave && enter > 0) nearest = enter;
+  }
+  return nearest < 100 ? nearest : 0;
+}
+
+bool StreetDrive::Next(sensor::LidarPacket* packet, FixedVector<sensor::ImuSample, 16>* samples) {
+  const double t0 = static_cast<double>(packet_) * kPacketS;
+  if (t0 >= config_.seconds) return false;
+  samples->clear();
+  while (static_cast<double>(imu_) / config_.imu_hz <= t0) {
+    const double t_imu = static_cast<double>(imu_++) / config_.imu_hz;
+    const sensor::ImuSample sample = Imu(t_imu);
+    if (t_imu >= config_.imu_gap_from_s && t_imu < config_.imu_gap_to_s) continue;
+    (void)samples->TryPush(sample);
+  }
+  packet->points.clear();
+  packet->t = {FromSeconds(t0).ns + 1};
+  packet->azimuth_first_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480);
+  packet->azimuth_last_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480 + 460);
+  for (int column = 0; column < kColumnsPerPacket; ++column) {
+    const double t = t0 + column * kPacketS / kColumnsPerPacket;
+    const geom::Pose3 world_T_lidar = World(t) * kBodyTLidar;
+    const Eigen::Vector3f from = world_T_lidar.t.cast<float>();
+    const double azimuth =
+        (static_cast<double>(packet_ % 75) * kColumnsPerPacket + column) * 2 * std::numbers::pi / 1800;
+    for (int beam = 0; beam < kBeams; ++beam) {
+      const double elevation = (2 * beam - 15) * std::numbers::pi / 180;
+      const geom::Vec3d ray(std::cos(elevation) * std::cos(azimuth) + 1e-7,
+                            -std::cos(elevation) * std::sin(azimuth) + 1e-7, std::sin(elevation));
+      const float range = Cast(from, (world_T_lidar.q * ray).cast<float>());
+      if (range <= 0) continue;
+      const Eigen::Vector3f p = (ray * (static_cast<double>(range) + config_.range_noise_m * Noise())).cast<float>();
+      (void)packet->points.TryPush(
+          {p.x(), p.y(), p.z(), 50, static_cast<std::int32_t>((t - t0) * 1e9), static_cast<std::uint16_t>(beam), 0});
+    }
+  }
+  ++packet_;
+  return true;
+}
+
+bool StreetDrive::Step(pipeline::AgentPipeline* agent) {
+  if (!Next(&scratch_packet_, &scratch_samples_)) return false;
+  for (const sensor::ImuSample& sample : scratch_samples_) agent->OnImu(sample);
+  agent->OnPacket(scratch_packet_);
+  return true;
+}
+
+}  // namespace mapweld::test
