@@ -1,18 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "core/base/status.hpp"
+#include "core/place/column_grid.hpp"
 #include "core/place/descriptor.hpp"
+#include "core/place/projection_spectrum.hpp"
 #include "core/submap/submap.hpp"
 
 namespace mapweld::place {
 
-// Submap in, place description out. Owns its scratch memory; no heap. The same submap gives the same bytes.
-// Refuses (kBadInput) submaps with fewer than kMinPoints points: a description that looks valid is never made up.
+// Submap in, place description out. Owns its scratch memory (about 530 kB: keep it in static memory); no heap. The same
+// set of points gives the same bytes, in whatever order they come and on whatever machine.
+//
+// This version is made by hand, without training; docs/descriptor.md has its formulas and what it measures.
+// Cost: proportional to the occupied 0.5 m columns within 35 m; 49152 points in as many columns are the worst case,
+// about 3 ms on one x86-64 core. A city street takes less than 1 ms.
 class Describer {
  public:
   static constexpr std::size_t kMinPoints = 200;
+
+  // kBadInput, with *description untouched: fewer than kMinPoints points within reach, points that are not finite or
+  // beyond 1 km, or points that all lie in one plane or line. A description that looks valid is never made up.
   Status Describe(const submap::Submap& submap, PlaceDescription* description);
+
+ private:
+  void DescribePlace(PlaceDescriptor* descriptor) const;
+  void DescribeOrientation(OrientationSignature* signature) const;
+
+  ColumnGrid grid_;
+  ProjectionSpectrum spectrum_;
 };
 
 }  // namespace mapweld::place

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/place/column_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mapweld::place {
+namespace {
+
+std::int32_t ToQ8(float metres) {
+  return static_cast<std::int32_t>(std::floor(metres * kQ8 + 0.5F));
+}
+
+bool IsSane(float v) {
+  return std::abs(v) <= ColumnGrid::kMaxCoordinate_m;
+}  // false for NaN
+
+// First and second moments of integer coordinates: sums of integers do not depend on the order.
+struct Moments {
+  std::int64_t n = 0;
+  std::array<std::int64_t, 3> sum{};
+  std::array<std::int64_t, 6> square{};  // xx xy xz yy yz zz
+
+  void Add(std::int64_t x, std::int64_t y, std::int64_t z) {
+    ++n;
+    sum[0] += x, sum[1] += y, sum[2] += z;
+    square[0] += x * x, square[1] += x * y, square[2] += x * z;
+    square[3] += y * y, square[4] += y * z, square[5] += z * z;
+  }
+
+  // det / (sum of the principal 2 x 2 minors) of the covariance lies between a third of the smallest eigenvalue and the
+  // eigenvalue itself; minors / trace does the same for the middle one. Enough to tell a plane or a line from a place.
+  [[nodiscard]] bool IsFlat(double sigma_q8) const {
+    const auto count = static_cast<double>(n);
+    const auto cov = [&](std::size_t k, std::size_t i, std::size_t j) {
+      return static_cast<double>(square[k]) / count -
+             static_cast<double>(sum[i]) / count * (static_cast<double>(sum[j]) / count);
+    };
+    const double xx = cov(0, 0, 0);
+    const double xy = cov(1, 0, 1);
+    const double xz = cov(2, 0, 2);
+    const double yy = cov(3, 1, 1);
+    const double yz = cov(4, 1, 2);
+    const double zz = cov(5, 2, 2);
+    const double minor_x = yy * zz - yz * yz;
+    const double minors = minor_x + (xx * zz - xz * xz) + (xx * yy - xy * xy);
+    const double det = xx * minor_x - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    const double variance = sigma_q8 * sigma_q8;
+    const bool is_line = minors <= variance * (xx + yy + zz);
+    return is_line || det <= variance / 3 * minors;
+  }
+};
+
+constexpr double kFlatSigmaQ8 = 0.05 * kQ8;
+
+}  // namespace
+
+Status ColumnGrid::Build(std::span<const submap::SubmapPoint> points, std::size_t min_points) {
+  cells_.fill(Cell{});
+  Moments moments;
+  for (const submap::SubmapPoint& p : points) {
+    if (!IsSane(p.x) || !IsSane(p.y) || !IsSane(p.z)) return Status::kBadInput;
+    const std::int32_t x = ToQ8(p.x);
+    const std::int32_t y = ToQ8(p.y);
+    const std::int32_t z = ToQ8(p.z);
+    if (x < -kReachQ8 || x >= kReachQ8 || y < -kReachQ8 || y >= kReachQ8) continue;
+    moments.Add(x, y, z);
+    const auto column = static_cast<std::size_t>((x + kReachQ8) / kCellQ8);
+    const auto row = static_cast<std::size_t>((y + kReachQ8) / kCellQ8);
+    const auto dx = static_cast<std::uint8_t>((x + kReachQ8) % kCellQ8);
+    const auto dy = static_cast<std::uint8_t>((y + kReachQ8) % kCellQ8);
+    Cell& cell = cells_[row * kSide + column];
+    if (cell.z_max_q8 < cell.z_min_q8) {
+      cell = {z, z, dx, dx, dy, dy};
+      continue;
+    }
+    cell.z_min_q8 = std::min(cell.z_min_q8, z);
+    cell.z_max_q8 = std::max(cell.z_max_q8, z);
+    cell.x_min_q8 = std::min(cell.x_min_q8, dx);
+    cell.x_max_q8 = std::max(cell.x_max_q8, dx);
+    cell.y_min_q8 = std::min(cell.y_min_q8, dy);
+    cell.y_max_q8 = std::max(cell.y_max_q8, dy);
+  }
+  if (moments.n < static_cast<std::int64_t>(min_points)) return Status::kBadInput;
+  return moments.IsFlat(kFlatSigmaQ8) ? Status::kBadInput : Status::kOk;
+}
+
+Column ColumnGrid::MakeColumn(std::size_t index) const {
+  const Cell& cell = cells_[index];
+  const auto x0 = static_cast<std::int32_t>(index % kSide) * kCellQ8 - kReachQ8;
+  const auto y0 = static_cast<std::int32_t>(index / kSide) * kCellQ8 - kReachQ8;
+  return {.x_q8 = x0 + (cell.x_min_q8 + cell.x_max_q8) / 2,
+          .y_q8 = y0 + (cell.y_min_q8 + cell.y_max_q8) / 2,
+          .weight_q8 = std::min(cell.z_max_q8 - cell.z_min_q8 + kBaseWeightQ8, kMaxWeightQ8)};
+}
+
+}  // namespace mapweld::place
