@@ -13,7 +13,6 @@
 #include "tools/io/kitti.hpp"
 #include "tools/io/pcd.hpp"
 #include "tools/io/ply.hpp"
-#include "tools/io/tum.hpp"
 #include "tools/io/unique_names.hpp"
 
 namespace mapweld::report {
@@ -95,14 +94,20 @@ class OutputFolder {
   std::set<fs::path> written_;
 };
 
-void WritePoses(const fs::path& group, const std::string& name, const merge::Drive& drive,
-                const std::vector<geom::Pose3>& merged_T_body, OutputFolder* output) {
+std::vector<io::StampedPose> KeyframePoses(const merge::Drive& drive, const std::vector<geom::Pose3>& merged_T_body) {
   std::vector<io::StampedPose> stamped;
   for (std::size_t k = 0; k < drive.keyframes.size(); ++k) {
     stamped.push_back({drive.keyframes[k].t, merged_T_body.at(k)});
   }
-  io::WriteTum(output->File(group / "poses" / (name + ".tum")), stamped);
-  io::WriteKittiPoses(output->File(group / "poses" / (name + "_kitti.txt")), merged_T_body);
+  return stamped;
+}
+
+void WritePoses(const fs::path& poses, const std::string& name, const std::vector<io::StampedPose>& trajectory,
+                OutputFolder* output) {
+  io::WriteTum(output->File(poses / (name + ".tum")), trajectory);
+  std::vector<geom::Pose3> rows;
+  for (const io::StampedPose& pose : trajectory) rows.push_back(pose.world_T_body);
+  io::WriteKittiPoses(output->File(poses / (name + "_kitti.txt")), rows);
 }
 
 geom::Mat6d Information(double sigma_m, double sigma_rad) {
@@ -190,7 +195,8 @@ void WritePoseGraph(const fs::path& path, const std::vector<merge::Drive>& drive
 }
 
 void WriteMergeOutput(const fs::path& folder, const std::vector<merge::Drive>& drives, const merge::MergeResult& result,
-                      const std::vector<std::vector<MapPoint>>& maps) {
+                      const std::vector<std::vector<MapPoint>>& maps,
+                      const std::vector<std::vector<io::StampedPose>>& trajectories) {
   OutputFolder output(folder);
   io::WriteFileAtomically(output.File("groups.json"), GroupsJson(drives, result));
   io::WriteFileAtomically(output.File("overlaps.json"), OverlapsJson(drives, result));
@@ -205,7 +211,9 @@ void WriteMergeOutput(const fs::path& folder, const std::vector<merge::Drive>& d
     WritePoseGraph(output.File(group / "pose_graph.g2o"), drives, result, static_cast<int>(g));
     for (const int drive : result.groups[g]) {
       const auto d = static_cast<std::size_t>(drive);
-      WritePoses(group, file_names[d], drives[d], result.merged_T_body.at(d), &output);
+      const bool given = d < trajectories.size() && !trajectories[d].empty();
+      WritePoses(group / "poses", file_names[d],
+                 given ? trajectories[d] : KeyframePoses(drives.at(d), result.merged_T_body.at(d)), &output);
     }
   }
   output.RemoveLeftovers();
