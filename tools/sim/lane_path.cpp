@@ -93,7 +93,7 @@ Polyline LaneLine(const Polyline& centreline) {
   Polyline line = Smooth(Resample(centreline, kStep_m), 1.0);
   line = LimitCurvature(line, 4.0);
   line = Resample(ToTheRight(line, LanePath::kLaneOffset_m), kStep_m);
-  line = UseTheLane(LimitCurvature(line, LanePath::kMinRadius_m));
+  line = UseTheLane(LimitCurvature(line, 1.05 * LanePath::kMinRadius_m));
   return Resample(Smooth(line, 1.5), kStep_m);
 }
 

@@ -107,7 +107,7 @@ void FillPlot(const Plot& plot, const Clearance& clearance, TownMesh& mesh) {
   };
   const double kind = Uniform(Hash(plot.seed, 1));
   if (kind < 0.22) {
-    const Vec2d centre = at(Uniform(Hash(plot.seed, 2), -0.5, 0.5), 1.3);
+    const Vec2d centre = at(Uniform(Hash(plot.seed, 2), -0.5, 0.5), 1.4);
     const bool free = clearance.IsFree(centre - 1.6 * plot.along, 0.9) && clearance.IsFree(centre, 0.9) &&
                       clearance.IsFree(centre + 1.6 * plot.along, 0.9);
     if (free) AddCar(centre, plot.along, plot.seed, mesh);

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/lidar_simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tools/sim/hash_noise.hpp"
+
+namespace mapweld::sim {
+namespace {
+
+constexpr std::int64_t kStart_ns = 601'000'000'000;
+
+// A decoder of its own, from the bytes, for what the encoder and the simulator promise together.
+struct Point {
+  double t;  // s past the hour
+  geom::Vec3d lidar;
+  int elevation_deg;
+};
+
+std::vector<Point> Decode(const std::array<std::uint8_t, 1206>& bytes) {
+  const int elevation[16] = {-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15};
+  const double t0 = 1e-6 * (bytes[1200] + 256.0 * (bytes[1201] + 256.0 * (bytes[1202] + 256.0 * bytes[1203])));
+  std::vector<Point> points;
+  for (std::size_t channel = 0; channel < 12 * 32; ++channel) {
+    const std::size_t block = channel / 32;
+    const std::size_t laser = channel % 16;
+    const double since_block_us = 55.296 * static_cast<double>(channel % 32 / 16) + 2.304 * static_cast<double>(laser);
+    const double azimuth_deg =
+        0.01 * (bytes[block * 100 + 2] + 256 * bytes[block * 100 + 3]) + since_block_us * 3600e-6;
+    const std::size_t at = block * 100 + 4 + channel % 32 * 3;
+    const double r = 0.002 * (bytes[at] + 256 * bytes[at + 1]);
+    if (r == 0) continue;
+    const double a = azimuth_deg * std::numbers::pi / 180;
+    const double w = elevation[laser] * std::numbers::pi / 180;
+    const geom::Vec3d manual(r * std::cos(w) * std::sin(a), r * std::cos(w) * std::cos(a), r * std::sin(w));
+    points.push_back({t0 + 1e-6 * (110.592 * static_cast<double>(block) + since_block_us),
+                      {manual.y(), -manual.x(), manual.z()},
+                      elevation[laser]});
+  }
+  return points;
+}
+
+// Four walls, far enough apart to be driven through, and a floor.
+TownMesh Hall() {
+  TownMesh mesh;
+  Of(mesh, Surface::kWall).AddWalls({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, -1, 60);
+  Of(mesh, Surface::kRoad).AddFace({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, 0);
+  return mesh;
+}
+
+double DistanceToHall(const geom::Vec3d& p) {
+  return std::min(
+      {std::abs(p.x() + 40), std::abs(p.x() - 100), std::abs(p.y() + 20), std::abs(p.y() - 30), std::abs(p.z())});
+}
+
+class Lidar : public testing::Test {
+ protected:
+  const RayCaster caster_{Hall()};
+  const VehicleMotion motion_{LanePath::Beside({{0, 0}, {60, 0}}), DrivingStyle{}, 3};
+  const LidarModel model_;
+  const LidarSimulator lidar_{caster_, motion_, model_, kStart_ns, 77};
+};
+
+TEST_F(Lidar, HitsTheWorldFromWhereTheSensorIsAtEachFiring) {
+  const auto first = static_cast<std::int64_t>(8.0 / 1.327104e-3);  // driving at about 6 m/s
+  double worst = 0;
+  double worst_without_motion = 0;
+  std::size_t n = 0;
+  for (std::int64_t i = first; i < first + 76; ++i) {
+    for (const Point& p : Decode(EncodeVlp16(lidar_.Packet(i)))) {
+      const double t = p.t - 1e-9 * static_cast<double>(kStart_ns);
+      worst = std::max(worst, DistanceToHall(motion_.WorldFromBody(t) * (model_.body_T_lidar * p.lidar)));
+      worst_without_motion =
+          std::max(worst_without_motion, DistanceToHall(motion_.WorldFromBody(8.0) * (model_.body_T_lidar * p.lidar)));
+      ++n;
+    }
+  }
+  EXPECT_GT(n, 20000U);
+  EXPECT_LT(worst, 3.47 * model_.range_sigma_m + 0.02);
+  EXPECT_GT(worst_without_motion, 0.3) << "the drive is too slow to prove anything";
+}
+
+TEST_F(Lidar, LocksItsAngleToTheSecondAndStampsTheFirstFiring) {
+  EXPECT_EQ(lidar_.Packet(0).azimuth_cdeg[0], 0);
+  EXPECT_EQ(lidar_.Packet(0).us_past_hour, 601'000'000U);
+  EXPECT_EQ(lidar_.Packet(0).azimuth_cdeg[1], 40);  // 110.592 us at 0.36 degrees per ms: 39.8
+  EXPECT_EQ(lidar_.Packet(1).us_past_hour, 601'001'327U);
+  EXPECT_EQ(lidar_.Packet(1).azimuth_cdeg[0], 478);  // 477.76
+  const Vlp16Packet later = lidar_.Packet(7535);     // 9.99972864 s
+  EXPECT_EQ(later.us_past_hour, 610'999'728U);
+  EXPECT_EQ(later.azimuth_cdeg[0], 35902);
+  EXPECT_EQ(later.azimuth_cdeg[3], 22);  // past the zero
+}
+
+TEST_F(Lidar, GivesTheSamePacketWheneverItIsAsked) {
+  const auto once = EncodeVlp16(lidar_.Packet(2000));
+  (void)lidar_.Packet(1);
+  EXPECT_EQ(once, EncodeVlp16(lidar_.Packet(2000)));
+  const LidarSimulator other(caster_, motion_, model_, kStart_ns, 78);
+  EXPECT_NE(once, EncodeVlp16(other.Packet(2000)));
+}
+
+double DetectedShare(Surface surface, double distance_m, double cos_incidence) {
+  int seen = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    seen += DetectReturn({}, surface, 5, distance_m, cos_incidence, Hash(1, i)).distance_2mm != 0 ? 1 : 0;
+  }
+  return seen / 2000.0;
+}
+
+TEST(Receiver, LosesMoreReturnsFarAwayAndAtGrazingIncidence) {
+  EXPECT_GT(DetectedShare(Surface::kWall, 10, 1), 0.99);
+  EXPECT_LT(DetectedShare(Surface::kWall, 10, 1), 1.0);
+  EXPECT_GT(DetectedShare(Surface::kRoad, 7, 0.25), 0.98);
+  EXPECT_LT(DetectedShare(Surface::kRoad, 60, 0.03), 0.2);
+  EXPECT_GT(DetectedShare(Surface::kWall, 60, 0.9), DetectedShare(Surface::kWall, 95, 0.9));
+}
+
+TEST(Receiver, MeasuresRangeWithTwoCentimetresOfNoise) {
+  double sum = 0;
+  double squares = 0;
+  constexpr int kShots = 20000;
+  int n = 0;
+  for (std::uint64_t i = 0; i < kShots; ++i) {
+    const Vlp16Return r = DetectReturn({}, Surface::kWall, 5, 20, 1, Hash(2, i));
+    if (r.distance_2mm == 0) continue;
+    const double error = r.distance_2mm * 0.002 - 20;
+    sum += error;
+    squares += error * error;
+    ++n;
+    ASSERT_GE(r.reflectivity, 1);
+    ASSERT_LE(r.reflectivity, 100);
+  }
+  EXPECT_NEAR(sum / n, 0, 0.0006);
+  EXPECT_NEAR(std::sqrt(squares / n), 0.02, 0.0005);
+}
+
+}  // namespace
+}  // namespace mapweld::sim

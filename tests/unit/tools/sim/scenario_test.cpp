@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/scenario.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/tools/sim/test_folder.hpp"
+
+namespace mapweld::sim {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kGood =
+    R"({"name":"n","town":"t.osm","origin":[50,11],"vehicles":[{"id":2,"route":[[50,11],[50.1,11]]},
+        {"id":1,"route":[[50,11],[50.1,11]]}]})";
+
+class ScenarioFile : public testing::Test {
+ protected:
+  Scenario Read(const std::string& text) {
+    WriteText(folder_ / "s.json", text);
+    return ReadScenario(folder_ / "s.json");
+  }
+  std::string Complaint(const std::string& from, const std::string& to) {
+    std::string text = kGood;
+    text.replace(text.find(from), from.size(), to);
+    return MessageOf([&] { (void)Read(text); });
+  }
+  const TestFolder folder_;
+};
+
+TEST_F(ScenarioFile, SortsVehiclesAndFindsTheTownBesideItself) {
+  const Scenario scenario = Read(kGood);
+  ASSERT_EQ(scenario.vehicles.size(), 2U);
+  EXPECT_EQ(scenario.vehicles[0].id, 1);
+  EXPECT_EQ(scenario.vehicles[1].waypoints.size(), 2U);
+  EXPECT_EQ(scenario.town, folder_ / "t.osm");
+  EXPECT_EQ(scenario.seed, 1U);
+}
+
+TEST_F(ScenarioFile, NamesWhatIsWrong) {
+  EXPECT_THAT(Complaint("\"name\":\"n\",", ""), HasSubstr("'name' is missing"));
+  EXPECT_THAT(Complaint("\"name\"", "\"nmae\""), HasSubstr("unknown key 'nmae'"));
+  EXPECT_THAT(Complaint("\"route\"", "\"path\""), HasSubstr("vehicle number 1: unknown key 'path'"));
+  EXPECT_THAT(Complaint("\"id\":2", "\"id\":0"), HasSubstr("outside 1..32767"));
+  EXPECT_THAT(Complaint("\"id\":2", "\"id\":1"), HasSubstr("two vehicles have id 1"));
+  EXPECT_THAT(Complaint("\"id\":2", "\"id\":\"x\""), HasSubstr("'id' has the wrong kind of value"));
+  EXPECT_THAT(Complaint("[50,11],\"v", "[500,11],\"v"), HasSubstr("is no [latitude, longitude]"));
+  EXPECT_THAT(Complaint("{", ""), HasSubstr("no valid JSON"));
+  EXPECT_THAT(MessageOf([] { (void)ReadScenario("missing.json"); }), HasSubstr("cannot open scenario missing.json"));
+}
+
+TEST(DemoScenario, ComesWithTheProgram) {
+  const Scenario scenario = ReadScenario(DemoScenario());
+  EXPECT_EQ(scenario.vehicles.size(), 4U);
+  EXPECT_TRUE(std::filesystem::exists(scenario.town));
+}
+
+}  // namespace
+}  // namespace mapweld::sim

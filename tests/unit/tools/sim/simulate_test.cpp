@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/simulate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/unit/tools/sim/test_folder.hpp"
+#include "tools/sim/scenario.hpp"
+
+namespace mapweld::sim {
+namespace {
+
+using testing::HasSubstr;
+
+class Simulation : public testing::Test {
+ protected:
+  SimOptions Options(const std::string& name, unsigned threads) {
+    SimOptions options;
+    options.scenario = DemoScenario();
+    options.out = folder_ / name;
+    options.seconds = 1.5;
+    options.threads = threads;
+    return options;
+  }
+  static SimSummary Run(const SimOptions& options) {
+    return Simulate(options, [](int, double) {});
+  }
+  void ExpectSameDrive(const std::string& a, const std::string& b, int vehicle) {
+    const std::string folder = "vehicle_" + std::to_string(vehicle);
+    for (const char* file : {"lidar.pcap", "imu.candump", "truth.tum"}) {
+      EXPECT_TRUE(ReadText(folder_ / a / folder / file) == ReadText(folder_ / b / folder / file))
+          << file << " of vehicle " << vehicle << " differs";
+    }
+  }
+  const TestFolder folder_;
+};
+
+TEST_F(Simulation, GivesTheSameBytesWithAnyNumberOfThreadsAndInAnyCompany) {
+  (void)Run(Options("one", 1));
+  (void)Run(Options("two", 2));
+  SimOptions alone = Options("alone", 1);
+  alone.vehicles = {3};
+  (void)Run(alone);
+  for (int vehicle = 1; vehicle <= 4; ++vehicle) ExpectSameDrive("one", "two", vehicle);
+  EXPECT_EQ(ReadText(folder_ / "one/scenario.json"), ReadText(folder_ / "two/scenario.json"));
+  ExpectSameDrive("one", "alone", 3);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "alone/vehicle_1"));
+}
+
+TEST_F(Simulation, ChangesTheNoiseWithTheSeedButNotTheStreets) {
+  SimOptions options = Options("a", 0);
+  options.vehicles = {1};
+  (void)Run(options);
+  options.out = folder_ / "b";
+  options.seed = 99;
+  (void)Run(options);
+  EXPECT_NE(ReadText(folder_ / "a/vehicle_1/lidar.pcap"), ReadText(folder_ / "b/vehicle_1/lidar.pcap"));
+  EXPECT_EQ(ReadText(folder_ / "a/vehicle_1/truth.tum"), ReadText(folder_ / "b/vehicle_1/truth.tum"))
+      << "standing still, the truth has no seed";
+}
+
+TEST_F(Simulation, WritesCompleteRecordings) {
+  const SimSummary summary = Run(Options("r", 0));
+  ASSERT_EQ(summary.vehicles.size(), 4U);
+  const DriveCounts& counts = summary.vehicles[1].counts;
+  EXPECT_EQ(counts.packets, 1130);  // 1.5 s / 1.327104 ms
+  EXPECT_EQ(counts.imu_samples, 300);
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "r/vehicle_2/lidar.pcap"), 24U + 1130U * (16U + 42U + 1206U));
+  std::istringstream log(ReadText(folder_ / "r/vehicle_2/imu.candump"));
+  std::string line;
+  ASSERT_TRUE(std::getline(log, line));
+  EXPECT_EQ(line, "(0000000602.000400) can0 005#005BDBA0");  // 6020000 units of 100 us
+  std::istringstream truth(ReadText(folder_ / "r/vehicle_2/truth.tum"));
+  double t = 0;
+  double x = 0;
+  double y = 0;
+  double z = 0;
+  truth >> t >> x >> y >> z;
+  EXPECT_EQ(t, 602.0);
+  EXPECT_NEAR(z, 1.5, 0.01);
+  const auto description = nlohmann::json::parse(ReadText(folder_ / "r/scenario.json"));
+  EXPECT_EQ(description.at("vehicles").at(1).at("folder"), "vehicle_2");
+  EXPECT_EQ(description.at("vehicles").at(1).at("start_s"), 602.0);
+  EXPECT_EQ(description.at("body_T_lidar").at("t_m"), nlohmann::json({0.10, 0.0, 0.35}));
+}
+
+TEST_F(Simulation, ReplacesARecordingButNothingElse) {
+  SimOptions options = Options("r", 0);
+  options.vehicles = {1};
+  (void)Run(options);
+  options.vehicles = {2};
+  (void)Run(options);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "r/vehicle_1"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "r/vehicle_2/lidar.pcap"));
+  std::filesystem::create_directories(folder_ / "mine");
+  WriteText(folder_ / "mine/diary.txt", "dear diary");
+  options.out = folder_ / "mine";
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("is not a recording"));
+  EXPECT_EQ(ReadText(folder_ / "mine/diary.txt"), "dear diary");
+}
+
+TEST_F(Simulation, LeavesNothingBehindWhenItFails) {
+  SimOptions options = Options("r", 0);
+  options.vehicles = {9};
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("no vehicle 9"));
+  WriteText(folder_ / "s.json",
+            R"({"name":"n","town":"gone.osm","origin":[50,11],"vehicles":[{"id":1,"route":[[50,11],[50.1,11]]}]})");
+  options = Options("r", 0);
+  options.scenario = folder_ / "s.json";
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("gone.osm does not exist"));
+  std::size_t left = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "")) left += entry.exists() ? 1U : 0U;
+  EXPECT_EQ(left, 1U) << "only the scenario file";
+}
+
+}  // namespace
+}  // namespace mapweld::sim
