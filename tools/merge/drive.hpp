@@ -21,7 +21,8 @@ struct Keyframe {
   bool flushed = false;  // its submap is incomplete, because the drive ended
 };
 
-// One uninterrupted odometry: all poses in one gravity-aligned frame `odom` of its own. Keyframes in order, about 5 m apart.
+// One uninterrupted odometry: all poses in one gravity-aligned frame `odom` of its own. Keyframes in order, about 5 m
+// apart.
 struct Drive {
   std::string name;  // unique
   std::vector<Keyframe> keyframes;

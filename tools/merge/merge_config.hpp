@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every choice of the merge that is not fixed by its method, in one place.
+#pragma once
+
+#include "tools/merge/registration.hpp"
+
+namespace mapweld::merge {
+
+// Which keyframes of two drives could show the same place.
+struct AssociationConfig {
+  int min_sequence = 4;  // keyframes; shorter lines of matches are left to the single matches
+  int max_sequence = 16;
+  double min_sequence_score = 3.5;  // robust standard deviations above what unrelated stretches reach
+  double min_single_score = 2.0;    // the same for one keyframe
+  int max_sequence_matches = 24;    // per pair of drives
+  int max_single_matches = 16;      // per pair of drives
+};
+
+// Which matches belong together.
+struct ZoneConfig {
+  int zone_gap = 5;              // keyframes between matches of one zone, at most
+  double edge_ratio = 0.8;       // beta of eq. 7
+  double edge_slack_m = 5;       // one keyframe spacing: short edges pass by this instead
+  double position_slack_m = 10;  // two keyframes of one place are this close
+  double yaw_slack_rad = 0.35;   // error of the yaw of one match
+  double drift = 0.02;           // of the odometry, m per m
+  int ransac_rounds = 100;
+  int max_zones = 10;  // per pair of drives, best first
+};
+
+// When a pair of submaps shows the same place, and when a pair of drives overlaps.
+struct VerifyConfig {
+  int seeds_per_zone = 3;       // matches tried before a zone is given up
+  double seed_evidence = 0.30;  // of the first loop of a zone; see Registration::Evidence
+  double loop_evidence = 0.22;  // of a loop whose pose was predicted by a verified neighbour
+  double min_covered_share = 0.25;
+  double max_tilt_rad = 0.09;
+  double max_jump_m = 3.0;  // between a predicted and a registered pose, plus drift
+  double max_jump_rad = 0.09;
+  double drift = 0.02;
+  double step_m = 10;               // between the loops along an overlap
+  double near_m = 15;               // keyframes closer than this must agree, or they speak against the overlap
+  double reach_m = 30;              // keyframes up to this far apart may add to the evidence
+  double min_total_evidence = 1.6;  // sum over the loops of an overlap
+  int min_loops = 3;
+  double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
+};
+
+struct WeightConfig {
+  double half_weight_overlap_m = 10;  // the shared length with omega = 1/2; C_omega of eq. 9 follows
+  double theta = 0.02;                // greatest eigenvalue of the normalised Laplacian that still counts as a cluster
+};
+
+struct GraphConfig {
+  // Odometry between neighbouring keyframes, standard deviations per 5 m of path.
+  double odometry_sigma_m = 0.10;
+  double odometry_sigma_yaw_rad = 0.006;
+  double odometry_sigma_tilt_rad = 0.002;
+  double loop_sigma_m = 0.25;
+  double loop_sigma_yaw_rad = 0.008;
+  double loop_sigma_tilt_rad = 0.01;
+  int max_iterations = 40;
+};
+
+struct RefineConfig {
+  int rounds = 1;
+  double near_m = 12;
+  double step_m = 5;
+};
+
+struct MergeConfig {
+  AssociationConfig association;
+  ZoneConfig zones;
+  RegistrationConfig registration;
+  VerifyConfig verify;
+  WeightConfig weight;
+  GraphConfig graph;
+  RefineConfig refine;
+  int threads = 0;  // 0: all of the machine; never changes the result
+};
+
+}  // namespace mapweld::merge
