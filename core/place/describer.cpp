@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/place/describer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -85,12 +86,16 @@ void FillRelations(const AngularSpectrum& angular, std::span<float, 2 * kRelatio
   }
 }
 
-// Mean amplitude over bins [first, last) per direction: a curve with its peaks across the walls and the kerbs.
-void FillBand(const ProjectionSpectrum& spectrum, std::size_t first, std::size_t last, std::span<float> out) {
+// Wavelengths of 3.2 m to 9 m: short enough to be sharp, long enough to be seen from both directions of travel.
+constexpr std::size_t kSignatureFirstBin = 14;
+constexpr std::size_t kSignatureEndBin = 40;
+
+// Mean amplitude per direction: a curve with its peaks across the walls and the kerbs.
+void FillDirections(const ProjectionSpectrum& spectrum, std::span<float, kDirections> out) {
   for (std::size_t d = 0; d < kDirections; ++d) {
     float sum = 0;
-    for (std::size_t f = first; f < last; ++f) sum += spectrum.At(d, f);
-    out[d] = sum / static_cast<float>(last - first);
+    for (std::size_t f = kSignatureFirstBin; f < kSignatureEndBin; ++f) sum += spectrum.At(d, f);
+    out[d] = sum;
   }
 }
 
@@ -121,18 +126,21 @@ void Describer::DescribePlace(PlaceDescriptor* descriptor) const {
 void Describer::DescribeOrientation(OrientationSignature* signature) const {
   std::array<float, kSignatureDim> values{};
   const std::span<float, kSignatureDim> all(values);
-  const auto coarse = all.subspan<0, kDirections>();
-  const auto fine = all.subspan<kDirections, kDirections>();
-  const auto azimuth = all.subspan<2 * kDirections, kSectors>();
-  FillBand(spectrum_, 4, 14, coarse);
-  FillBand(spectrum_, 14, 40, fine);
-  const auto profile = AzimuthProfile(grid_);
-  for (std::size_t i = 0; i < kSectors; ++i) azimuth[i] = profile[i];
-  for (const auto block : {coarse, fine, azimuth}) SubtractMean(block);
-  // Squared, these are the weights of the three in the correlation.
-  ScaleToLength(coarse, 0.7F);
-  ScaleToLength(fine, 1.0F);
-  ScaleToLength(azimuth, 0.7F);
+  const auto directions = all.subspan<0, kDirections>();
+  const auto near = all.subspan<kDirections, kSectors>();
+  const auto far = all.subspan<kDirections + kSectors, kSectors>();
+  FillDirections(spectrum_, directions);
+  const AzimuthProfile profile = MakeAzimuthProfile(grid_);
+  std::copy(profile.near.begin(), profile.near.end(), near.begin());
+  std::copy(profile.far.begin(), profile.far.end(), far.begin());
+  for (const std::span<float> block : {std::span<float>(directions), std::span<float>(near), std::span<float>(far)}) {
+    SubtractMean(block);
+  }
+  // Squared, these are the weights of the three in the correlation: the directions say the angle to a fraction of a
+  // degree but not which way round, the sectors say which way round.
+  ScaleToLength(directions, 1.0F);
+  ScaleToLength(near, 0.7F);
+  ScaleToLength(far, 0.7F);
   signature->scale = QuantizeToInt8(values, &signature->q);
 }
 

@@ -23,8 +23,8 @@ float Cosine(std::int64_t dot, std::int64_t squared_a, std::int64_t squared_b) {
   return static_cast<float>(std::clamp(cosine, -1.0, 1.0));
 }
 
-// The signature is three curves of 64: two over half a turn (they repeat after it), one over the full turn. A step of
-// the correlation is 1/128 turn: one element of the first two, half an element of the third.
+// The signature is three curves of 64: one over half a turn (it repeats after it), two over the full turn. A step of
+// the correlation is 1/128 turn: one element of the first, half an element of the others.
 constexpr int kCurve = kSignatureDim / 3;
 constexpr int kSteps = 2 * kCurve;
 
@@ -49,11 +49,11 @@ RelativeYaw EstimateRelativeYaw(const OrientationSignature& a, const Orientation
   std::array<std::int32_t, kCurve> full_turn{};
   for (int s = 0; s < kCurve; ++s) {
     const auto i = static_cast<std::size_t>(s);
-    half_turn[i] = CorrelateCurve(a, b, 0, s) + CorrelateCurve(a, b, 1, s);
-    full_turn[i] = CorrelateCurve(a, b, 2, s);
+    half_turn[i] = CorrelateCurve(a, b, 0, s);
+    full_turn[i] = CorrelateCurve(a, b, 1, s) + CorrelateCurve(a, b, 2, s);
   }
   // What b sees at azimuth phi, a sees at phi + yaw; all values doubled so that the mean of two stays an integer.
-  const auto doubled = [&](int step) {
+  const auto doubled = [&half_turn, &full_turn](int step) {
     const auto s = static_cast<std::size_t>(step % kSteps);
     return 2 * half_turn[s % kCurve] + full_turn[s / 2] + full_turn[((s + 1) / 2) % kCurve];
   };

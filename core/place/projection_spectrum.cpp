@@ -13,6 +13,7 @@ namespace {
 constexpr std::int32_t kRimQ8 = 35 * kQ8;
 constexpr std::int32_t kFadeQ8 = 20 * kQ8;
 
+static_assert(kRimQ8 < 35 * kQ8 + 1, "projections reach 36 m");
 constexpr auto kDirection = MakeDirectionTable<2 * ProjectionSpectrum::kDirections>();
 
 // Worst case of one bin: the strip of 2 m that feeds it touches fewer than 800 cells, all of the heaviest weight.
@@ -38,11 +39,14 @@ void ProjectionSpectrum::Compute(const ColumnGrid& grid) {
   grid.ForEach([this](const Column& column) {
     const std::int32_t weight = FadedWeight(column);
     if (weight == 0) return;
+    std::array<std::uint32_t, kDirections> along_q8;  // in a loop of its own, which the compiler turns into SIMD
     for (std::size_t d = 0; d < kDirections; ++d) {
-      const std::int32_t along_q8 = (column.x_q8 * kDirection.x[d] + column.y_q8 * kDirection.y[d]) >> kDirectionShift;
-      const auto shifted = static_cast<std::uint32_t>(along_q8 + static_cast<std::int32_t>(kLength / 2) * kQ8);
-      const std::size_t cell = shifted / kQ8;
-      const auto fraction = static_cast<std::int32_t>(shifted % kQ8);
+      const std::int32_t along = (column.x_q8 * kDirection.x[d] + column.y_q8 * kDirection.y[d]) >> kDirectionShift;
+      along_q8[d] = static_cast<std::uint32_t>(along + static_cast<std::int32_t>(kReach) * kQ8);
+    }
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      const std::size_t cell = along_q8[d] / kQ8;
+      const auto fraction = static_cast<std::int32_t>(along_q8[d] % kQ8);
       projection_q16_[d][cell] += weight * (kQ8 - fraction);
       projection_q16_[d][cell + 1] += weight * fraction;
     }
@@ -51,7 +55,8 @@ void ProjectionSpectrum::Compute(const ColumnGrid& grid) {
   std::array<Complex, kLength> line;
   std::array<float, kBins> raw{};
   for (std::size_t d = 0; d < kDirections; ++d) {
-    for (std::size_t i = 0; i < kLength; ++i) line[i] = {static_cast<float>(projection_q16_[d][i]), 0};
+    line.fill({});
+    for (std::size_t i = 0; i < 2 * kReach; ++i) line[i].re = static_cast<float>(projection_q16_[d][i]);
     Fft<kLength>(line);
     for (std::size_t f = 0; f < kBins; ++f) {
       raw[f] = ThreeEighthsPowerOfRoot(line[f].re * line[f].re + line[f].im * line[f].im);

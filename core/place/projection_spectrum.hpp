@@ -28,7 +28,8 @@ class ProjectionSpectrum {
 
  private:
   static constexpr std::size_t kLength = 128;  // 1 m cells along each projection
-  std::array<std::array<std::int32_t, kLength>, kDirections> projection_q16_;
+  static constexpr std::size_t kReach = 36;    // of them, on either side of the origin, can be hit
+  std::array<std::array<std::int32_t, 2 * kReach>, kDirections> projection_q16_;
   std::array<std::array<float, kBins>, kDirections> amplitude_;
 };
 
