@@ -67,7 +67,8 @@ bool SensorClock::AgreesWithCandidate(std::uint64_t ticks, TimeNs receive) {
 
 void SensorClock::MoveEnvelope(DurationNs since_last, TimeNs receive) {
   const DurationNs error{(receive - sensor_).ns - offset_.ns};
-  const DurationNs elapsed = std::max(since_last, DurationNs{0});
+  // After a silence of days the offset moves as after one of an hour; this also keeps the product below within 64 bits.
+  const DurationNs elapsed = std::clamp(since_last, DurationNs{0}, Milliseconds(3'600'000));
   const std::int64_t slew = elapsed.ns * kSlewPpm / 1'000'000 + 1;
   const bool settling = settled_ < kSettle;
   settled_.ns = std::min(settled_.ns + elapsed.ns, kSettle.ns);
