@@ -63,23 +63,18 @@ class OutputFolder {
   // Only names that this program writes are touched; folders go only when nothing is left in them.
   void RemoveLeftovers() const {
     std::vector<fs::path> groups;
+    std::vector<fs::path> trajectories;
     for (const auto& entry : fs::directory_iterator(folder_)) {
       const std::string name = entry.path().filename().string();
       const bool numbered = name.size() > 6 && name.find_first_not_of("0123456789", 6) == std::string::npos;
       if (entry.is_directory() && name.starts_with("group_") && numbered) groups.push_back(entry.path());
+      const bool ours = name.ends_with(".tum") || name.ends_with(".kitti.txt");
+      if (entry.is_regular_file() && name.starts_with("trajectory_") && ours) trajectories.push_back(entry.path());
     }
+    for (const fs::path& trajectory : trajectories) RemoveLeftover(trajectory);
     for (const fs::path& group : groups) {
       for (const char* name : {"map.ply", "map.pcd", "pose_graph.g2o"}) RemoveLeftover(group / name);
-      std::vector<fs::path> poses;
-      if (fs::is_directory(group / "poses")) {
-        for (const auto& entry : fs::directory_iterator(group / "poses")) poses.push_back(entry.path());
-      }
-      for (const fs::path& path : poses) {
-        const std::string name = path.filename().string();
-        if (name.ends_with(".tum") || name.ends_with("_kitti.txt")) RemoveLeftover(path);
-      }
       std::error_code not_empty;
-      fs::remove(group / "poses", not_empty);
       fs::remove(group, not_empty);
     }
   }
@@ -102,12 +97,11 @@ std::vector<io::StampedPose> KeyframePoses(const merge::Drive& drive, const std:
   return stamped;
 }
 
-void WritePoses(const fs::path& poses, const std::string& name, const std::vector<io::StampedPose>& trajectory,
-                OutputFolder* output) {
-  io::WriteTum(output->File(poses / (name + ".tum")), trajectory);
+void WriteTrajectory(const std::string& name, const std::vector<io::StampedPose>& trajectory, OutputFolder* output) {
+  io::WriteTum(output->File("trajectory_" + name + ".tum"), trajectory);
   std::vector<geom::Pose3> rows;
   for (const io::StampedPose& pose : trajectory) rows.push_back(pose.world_T_body);
-  io::WriteKittiPoses(output->File(poses / (name + "_kitti.txt")), rows);
+  io::WriteKittiPoses(output->File("trajectory_" + name + ".kitti.txt"), rows);
 }
 
 geom::Mat6d Information(double sigma_m, double sigma_rad) {
@@ -131,17 +125,17 @@ std::string GroupsJson(const std::vector<merge::Drive>& drives, const merge::Mer
 std::string OverlapsJson(const std::vector<merge::Drive>& drives, const merge::MergeResult& result) {
   Json overlaps = Json::array();
   for (const merge::Overlap& overlap : result.overlaps) {
-    Json entry = {{"a", DriveAt(drives, overlap.drive_a).name},
-                  {"b", DriveAt(drives, overlap.drive_b).name},
-                  {"accepted", overlap.accepted},
-                  {"test", overlap.test},
-                  {"group", nullptr}};
+    Json entry;
+    entry["pair"] = {DriveAt(drives, overlap.drive_a).name, DriveAt(drives, overlap.drive_b).name};
+    entry["verdict"] = overlap.accepted ? "accepted" : "rejected";
+    entry["test"] = overlap.test;
+    entry["group"] = nullptr;
     const int group_a = result.group_of.at(static_cast<std::size_t>(overlap.drive_a));
     if (group_a == result.group_of.at(static_cast<std::size_t>(overlap.drive_b))) entry["group"] = group_a + 1;
     entry["reverse"] = overlap.reverse;
     entry["length_m"] = overlap.length_m;
     entry["weight"] = overlap.weight;
-    entry["a_T_b"] = Matrix4(overlap.a_T_b);
+    entry["transform"] = Matrix4(overlap.a_T_b);
     entry["matches"] = Json::array();
     for (const auto& [a, b] : overlap.matches) entry["matches"].push_back({a, b});
     entry["loops"] = Json::array();
@@ -212,8 +206,8 @@ void WriteMergeOutput(const fs::path& folder, const std::vector<merge::Drive>& d
     for (const int drive : result.groups[g]) {
       const auto d = static_cast<std::size_t>(drive);
       const bool given = d < trajectories.size() && !trajectories[d].empty();
-      WritePoses(group / "poses", file_names[d],
-                 given ? trajectories[d] : KeyframePoses(drives.at(d), result.merged_T_body.at(d)), &output);
+      WriteTrajectory(file_names[d],
+                      given ? trajectories[d] : KeyframePoses(drives.at(d), result.merged_T_body.at(d)), &output);
     }
   }
   output.RemoveLeftovers();
