@@ -18,8 +18,9 @@ constexpr T ByteSwap(T value) {
   auto u = static_cast<std::make_unsigned_t<T>>(value);
   std::make_unsigned_t<T> out = 0;
   for (std::size_t i = 0; i < sizeof(T); ++i) {
-    out = static_cast<std::make_unsigned_t<T>>((out << (sizeof(T) > 1 ? 8 : 0)) | (u & 0xFFU));
-    u = static_cast<std::make_unsigned_t<T>>(u >> (sizeof(T) > 1 ? 8 : 0));
+    // Shifted in 64 bits, because shifting 8 bits by 8 would not be defined.
+    out = static_cast<std::make_unsigned_t<T>>((std::uint64_t{out} << 8U) | (u & 0xFFU));
+    u = static_cast<std::make_unsigned_t<T>>(std::uint64_t{u} >> 8U);
   }
   return static_cast<T>(out);
 }
