@@ -60,6 +60,7 @@ struct GraphConfig {
   double loop_sigma_yaw_rad = 0.008;
   double loop_sigma_tilt_rad = 0.01;
   int max_iterations = 40;
+  double min_mean_weight = 0.4;  // of the loops of an overlap; below, the pose graph speaks against it
 };
 
 struct RefineConfig {

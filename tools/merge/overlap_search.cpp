@@ -214,11 +214,11 @@ Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const
   return out;
 }
 
-double SharedLength(const Drive& a, const std::vector<VerifiedLoop>& loops, const VerifyConfig& config) {
+double SharedLength(const Drive& a, const std::vector<Loop>& loops, const VerifyConfig& config) {
   if (loops.empty()) return 0;
   std::vector<double> at_m;
-  for (const VerifiedLoop& loop : loops) {
-    if (Horizontal(loop.a_T_b) <= config.near_m) at_m.push_back(Path(a, loop.a));
+  for (const Loop& loop : loops) {
+    if (Horizontal(loop.a_T_b) <= config.near_m) at_m.push_back(Path(a, loop.keyframe_a));
   }
   std::sort(at_m.begin(), at_m.end());
   double length_m = 0;

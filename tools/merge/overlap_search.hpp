@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/merge/loop_finder.hpp"
+#include "tools/merge/merge_result.hpp"
 #include "tools/merge/zones.hpp"
 
 namespace mapweld::merge {
@@ -29,6 +30,6 @@ Hypothesis Extend(LoopFinder* finder, const VerifiedLoop& seed, const VerifyConf
 Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const VerifyConfig& config);
 
 // Metres of drive a along which b is near, at least one keyframe spacing when there is a loop.
-double SharedLength(const Drive& a, const std::vector<VerifiedLoop>& loops, const VerifyConfig& config);
+double SharedLength(const Drive& a, const std::vector<Loop>& loops, const VerifyConfig& config);
 
 }  // namespace mapweld::merge

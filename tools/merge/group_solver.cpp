@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/merge/group_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/merge/robust_solve.hpp"
+
+namespace mapweld::merge {
+namespace {
+
+using geom::Pose3;
+using geom::Vec6d;
+
+// Errors of the odometry grow with the root of the path.
+GraphEdge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const GraphConfig& config) {
+  constexpr double kStep_m = 5;
+  const double growth = std::sqrt(std::clamp((to.path_m - from.path_m) / kStep_m, 0.2, 100.0));
+  GraphEdge edge;
+  edge.a = node;
+  edge.b = node + 1;
+  edge.a_T_b = from.odom_T_body.Inverse() * to.odom_T_body;
+  edge.sigma.head<3>().setConstant(config.odometry_sigma_m * growth);
+  edge.sigma[3] = edge.sigma[4] = config.odometry_sigma_tilt_rad * growth;
+  edge.sigma[5] = config.odometry_sigma_yaw_rad * growth;
+  return edge;
+}
+
+GraphEdge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
+                   const GraphConfig& config) {
+  // From level frames to body frames.
+  const Pose3 body_T_level_a = a.odom_T_body.Inverse() * geom::Level(a.odom_T_body);
+  const Pose3 body_T_level_b = b.odom_T_body.Inverse() * geom::Level(b.odom_T_body);
+  GraphEdge edge;
+  edge.a = node_a;
+  edge.b = node_b;
+  edge.a_T_b = body_T_level_a * loop.a_T_b * body_T_level_b.Inverse();
+  edge.sigma.head<3>().setConstant(config.loop_sigma_m);
+  edge.sigma[3] = edge.sigma[4] = config.loop_sigma_tilt_rad;
+  edge.sigma[5] = config.loop_sigma_yaw_rad;
+  return edge;
+}
+
+}  // namespace
+
+GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
+                         std::vector<Overlap>* overlaps) {
+  ChainGraph graph;
+  std::map<int, int> first_node;
+  for (std::size_t chain = 0; chain < group.size(); ++chain) {
+    const Drive& drive = drives[static_cast<std::size_t>(group[chain])];
+    first_node[group[chain]] = static_cast<int>(graph.chain_T_node.size());
+    for (std::size_t k = 0; k < drive.keyframes.size(); ++k) {
+      const int node = static_cast<int>(graph.chain_T_node.size());
+      graph.chain_T_node.push_back(drive.keyframes[k].odom_T_body);
+      graph.chain_of.push_back(static_cast<int>(chain));
+      if (k + 1 < drive.keyframes.size()) {
+        graph.odometry.push_back(OdometryEdge(drive.keyframes[k], drive.keyframes[k + 1], node, config));
+      }
+    }
+  }
+  std::vector<Loop*> used;
+  for (Overlap& overlap : *overlaps) {
+    const auto a = first_node.find(overlap.drive_a);
+    const auto b = first_node.find(overlap.drive_b);
+    if (!overlap.accepted || a == first_node.end() || b == first_node.end()) continue;
+    for (Loop& loop : overlap.loops) {
+      const Keyframe& keyframe_a =
+          drives[static_cast<std::size_t>(overlap.drive_a)].keyframes[static_cast<std::size_t>(loop.keyframe_a)];
+      const Keyframe& keyframe_b =
+          drives[static_cast<std::size_t>(overlap.drive_b)].keyframes[static_cast<std::size_t>(loop.keyframe_b)];
+      graph.loops.push_back(
+          LoopEdge(keyframe_a, keyframe_b, loop, a->second + loop.keyframe_a, b->second + loop.keyframe_b, config));
+      used.push_back(&loop);
+    }
+  }
+  RobustConfig robust;
+  robust.max_iterations = config.max_iterations;
+  const RobustResult solved = SolveRobust(graph, robust);
+  for (std::size_t i = 0; i < used.size(); ++i) used[i]->weight = solved.loop_weight[i];
+  GroupSolution out;
+  for (const int drive : group) {
+    const auto begin = solved.world_T_node.begin() + first_node[drive];
+    out.merged_T_body.emplace_back(
+        begin, begin + static_cast<std::ptrdiff_t>(drives[static_cast<std::size_t>(drive)].keyframes.size()));
+  }
+  return out;
+}
+
+}  // namespace mapweld::merge
