@@ -19,6 +19,7 @@
 #include <unordered_map>
 
 #include "tools/sim/hash_noise.hpp"
+#include "tools/sim/house_clearance.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -136,6 +137,7 @@ Town ReadOsmTown(const std::filesystem::path& file, const LocalFrame& frame) {
     throw std::runtime_error(fmt::format("town extract {} has {} buildings and {} roads; a simulation needs both",
                                          file.string(), town.buildings.size(), town.roads.size()));
   }
+  MoveHousesOffStreets(town);
   return town;
 }
 

@@ -47,7 +47,8 @@ struct Town {
   Box2 bounds;  // of the roads
 };
 
-// Reads .osm, .osm.gz or .osm.pbf. Ways that refer to nodes outside the extract lose those nodes. Throws
+// Reads .osm, .osm.gz or .osm.pbf. Ways that refer to nodes outside the extract lose those nodes; houses
+// whose corners the map puts on a carriageway are moved off it. Throws
 // std::runtime_error for a file that is missing, malformed, or has no streets or no buildings.
 Town ReadOsmTown(const std::filesystem::path& file, const LocalFrame& frame);
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tools/sim/test_folder.hpp"
+#include "tools/sim/house_clearance.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -54,6 +55,27 @@ TEST(OsmTown, ReadsWaysThatComeBeforeTheirNodes) {
   EXPECT_EQ(town.buildings[0].height_m, 13);
   ASSERT_EQ(town.roads.size(), 1U);
   EXPECT_NEAR(Length(town.roads[0].line), 111.2, 0.2);
+}
+
+TEST(HouseClearance, MovesAHouseOffTheStreetAndLeavesOthersAlone) {
+  Town town;
+  town.roads.push_back({1, {1, 2}, {{0, 0}, {100, 0}}, 3, true});
+  const Polyline square{{0, 0}, {10, 0}, {10, 8}, {0, 8}};
+  const auto at = [&](double x, double y) {
+    Polyline house = square;
+    for (Vec2d& p : house) p += Vec2d(x, y);
+    town.buildings.push_back({static_cast<std::int64_t>(town.buildings.size()), house, 6});
+  };
+  at(20, 2.1);    // a metre and a half too close
+  at(40, 4);      // free
+  at(60, -4);     // an archway
+  at(102, -2.5);  // behind the street's end, too close
+  MoveHousesOffStreets(town);
+  EXPECT_NEAR(town.buildings[0].footprint[0].y(), 3.6, 1e-9);
+  EXPECT_NEAR(town.buildings[0].footprint[0].x(), 20, 1e-9);
+  EXPECT_EQ(town.buildings[1].footprint[0], Vec2d(40, 4));
+  EXPECT_EQ(town.buildings[2].footprint[0], Vec2d(60, -4));
+  EXPECT_NEAR(town.buildings[3].footprint[0].x(), 103.6, 1e-9);
 }
 
 TEST(OsmTown, NamesTheFileWhenItIsMissing) {
