@@ -27,7 +27,7 @@ std::size_t RimBefore(const Column& c) {
   const bool upper_half = c.y_q8 > 0 || (c.y_q8 == 0 && c.x_q8 > 0);
   std::size_t low = upper_half ? 0 : kSectors / 2;
   for (std::size_t step = kSectors / 4; step > 0; step /= 2) {
-    if (LeftOfRim(low + step, c) >= 0) low += step;
+    low += LeftOfRim(low + step, c) >= 0 ? step : 0;
   }
   return low;
 }
@@ -61,9 +61,9 @@ AzimuthProfile MakeAzimuthProfile(const ColumnGrid& grid) {
     const auto r = static_cast<std::int32_t>(std::sqrt(x * x + y * y));
     if (r < kNearFromQ8 || r >= kFarEndQ8) return;
     const std::size_t before = RimBefore(c);
-    const std::int64_t from_before = LeftOfRim(before, c);
-    const std::int64_t to_after = -std::int64_t{LeftOfRim((before + 1) % kSectors, c)};
-    const auto share = static_cast<std::int32_t>(from_before * kQ8 / (from_before + to_after));
+    const auto from_before = static_cast<float>(LeftOfRim(before, c));
+    const auto to_after = static_cast<float>(-LeftOfRim((before + 1) % kSectors, c));
+    const auto share = static_cast<std::int32_t>(from_before / (from_before + to_after) * static_cast<float>(kQ8));
     if (r < kNearEndQ8) {
       const std::int32_t fade = std::min(kNearEndQ8 - r, kNearEndQ8 - kNearFadeQ8);
       near.Add(before, c.weight_q8 * fade / (kNearEndQ8 - kNearFadeQ8), share);

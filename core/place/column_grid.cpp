@@ -56,42 +56,65 @@ constexpr double kFlatSigmaQ8 = 0.05 * kQ8;
 }  // namespace
 
 Status ColumnGrid::Build(std::span<const submap::SubmapPoint> points, std::size_t min_points) {
+  MAPWELD_ASSERT(points.size() <= kCap.submap_points);
   cells_.fill(Cell{});
   Moments moments;
   for (const submap::SubmapPoint& p : points) {
     if (!IsSane(p.x) || !IsSane(p.y) || !IsSane(p.z)) return Status::kBadInput;
-    const std::int32_t x = ToQ8(p.x);
-    const std::int32_t y = ToQ8(p.y);
-    const std::int32_t z = ToQ8(p.z);
-    if (x < -kReachQ8 || x >= kReachQ8 || y < -kReachQ8 || y >= kReachQ8) continue;
-    moments.Add(x, y, z);
-    const auto column = static_cast<std::size_t>((x + kReachQ8) / kCellQ8);
-    const auto row = static_cast<std::size_t>((y + kReachQ8) / kCellQ8);
-    const auto dx = static_cast<std::uint8_t>((x + kReachQ8) % kCellQ8);
-    const auto dy = static_cast<std::uint8_t>((y + kReachQ8) % kCellQ8);
-    Cell& cell = cells_[row * kSide + column];
-    if (cell.z_max_q8 < cell.z_min_q8) {
-      cell = {z, z, dx, dx, dy, dy};
-      continue;
-    }
-    cell.z_min_q8 = std::min(cell.z_min_q8, z);
-    cell.z_max_q8 = std::max(cell.z_max_q8, z);
-    cell.x_min_q8 = std::min(cell.x_min_q8, dx);
-    cell.x_max_q8 = std::max(cell.x_max_q8, dx);
-    cell.y_min_q8 = std::min(cell.y_min_q8, dy);
-    cell.y_max_q8 = std::max(cell.y_max_q8, dy);
+    const Place at = MakePlace(p);
+    if (!at.is_inside) continue;
+    moments.Add(at.x_q8, at.y_q8, at.z_q8);
+    Cell& cell = cells_[at.cell];
+    cell.lowest_q8 = std::min(cell.lowest_q8, at.z_q8);
   }
-  if (moments.n < static_cast<std::int64_t>(min_points)) return Status::kBadInput;
-  return moments.IsFlat(kFlatSigmaQ8) ? Status::kBadInput : Status::kOk;
+  if (moments.n < static_cast<std::int64_t>(min_points) || moments.IsFlat(kFlatSigmaQ8)) return Status::kBadInput;
+
+  for (const submap::SubmapPoint& p : points) {
+    const Place at = MakePlace(p);
+    if (!at.is_inside) continue;
+    Cell& cell = cells_[at.cell];
+    if (cell.lowest_around_q8 == kEmptyQ8) cell.lowest_around_q8 = LowestAround(at.cell);
+    const std::int32_t height_q8 = at.z_q8 - cell.lowest_around_q8;
+    const std::int32_t weight =
+        height_q8 >= kFullHeightQ8 ? kQ8 : kLowestWeightQ8 + (kQ8 - kLowestWeightQ8) * height_q8 / kFullHeightQ8;
+    cell.weight_q8 += weight;
+    cell.x_moment_q16 += weight * ((at.x_q8 + kReachQ8) % kCellQ8);
+    cell.y_moment_q16 += weight * ((at.y_q8 + kReachQ8) % kCellQ8);
+  }
+  return Status::kOk;
+}
+
+ColumnGrid::Place ColumnGrid::MakePlace(const submap::SubmapPoint& p) {
+  Place at{.x_q8 = ToQ8(p.x), .y_q8 = ToQ8(p.y), .z_q8 = ToQ8(p.z)};
+  const auto inside = [](std::int32_t v) { return v >= -kReachQ8 && v < kReachQ8; };
+  at.is_inside = inside(at.x_q8) && inside(at.y_q8);
+  if (at.is_inside) {
+    const auto column = static_cast<std::size_t>((at.x_q8 + kReachQ8) / kCellQ8);
+    const auto row = static_cast<std::size_t>((at.y_q8 + kReachQ8) / kCellQ8);
+    at.cell = row * kSide + column;
+  }
+  return at;
+}
+
+std::int32_t ColumnGrid::LowestAround(std::size_t index) const {
+  const std::size_t row = index / kSide;
+  const std::size_t column = index % kSide;
+  std::int32_t lowest = kEmptyQ8;
+  for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, kSide - 1); ++r) {
+    for (std::size_t c = column - std::min<std::size_t>(column, 1); c <= std::min(column + 1, kSide - 1); ++c) {
+      lowest = std::min(lowest, cells_[r * kSide + c].lowest_q8);
+    }
+  }
+  return lowest;
 }
 
 Column ColumnGrid::MakeColumn(std::size_t index) const {
   const Cell& cell = cells_[index];
   const auto x0 = static_cast<std::int32_t>(index % kSide) * kCellQ8 - kReachQ8;
   const auto y0 = static_cast<std::int32_t>(index / kSide) * kCellQ8 - kReachQ8;
-  return {.x_q8 = x0 + (cell.x_min_q8 + cell.x_max_q8) / 2,
-          .y_q8 = y0 + (cell.y_min_q8 + cell.y_max_q8) / 2,
-          .weight_q8 = std::min(cell.z_max_q8 - cell.z_min_q8 + kBaseWeightQ8, kMaxWeightQ8)};
+  return {.x_q8 = x0 + cell.x_moment_q16 / cell.weight_q8,
+          .y_q8 = y0 + cell.y_moment_q16 / cell.weight_q8,
+          .weight_q8 = std::min(cell.weight_q8, kMaxWeightQ8)};
 }
 
 }  // namespace mapweld::place

@@ -91,11 +91,14 @@ constexpr std::size_t kSignatureFirstBin = 14;
 constexpr std::size_t kSignatureEndBin = 40;
 
 // Mean amplitude per direction: a curve with its peaks across the walls and the kerbs.
-void FillDirections(const ProjectionSpectrum& spectrum, std::span<float, kDirections> out) {
+void FillDirections(const ProjectionSpectrum& spectrum, std::span<float, kSectors> out) {
+  std::array<float, kDirections> sum{};
   for (std::size_t d = 0; d < kDirections; ++d) {
-    float sum = 0;
-    for (std::size_t f = kSignatureFirstBin; f < kSignatureEndBin; ++f) sum += spectrum.At(d, f);
-    out[d] = sum;
+    for (std::size_t f = kSignatureFirstBin; f < kSignatureEndBin; ++f) sum[d] += spectrum.At(d, f);
+  }
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    const std::size_t d = 2 * i;
+    out[i] = 0.25F * sum[(d + kDirections - 1) % kDirections] + 0.5F * sum[d] + 0.25F * sum[d + 1];
   }
 }
 
@@ -126,9 +129,9 @@ void Describer::DescribePlace(PlaceDescriptor* descriptor) const {
 void Describer::DescribeOrientation(OrientationSignature* signature) const {
   std::array<float, kSignatureDim> values{};
   const std::span<float, kSignatureDim> all(values);
-  const auto directions = all.subspan<0, kDirections>();
-  const auto near = all.subspan<kDirections, kSectors>();
-  const auto far = all.subspan<kDirections + kSectors, kSectors>();
+  const auto directions = all.subspan<0, kSectors>();
+  const auto near = all.subspan<kSectors, kSectors>();
+  const auto far = all.subspan<2 * kSectors, kSectors>();
   FillDirections(spectrum_, directions);
   const AzimuthProfile profile = MakeAzimuthProfile(grid_);
   std::copy(profile.near.begin(), profile.near.end(), near.begin());

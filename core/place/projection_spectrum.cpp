@@ -27,9 +27,16 @@ std::int32_t FadedWeight(const Column& column) {
   return r <= kRimQ8 - kFadeQ8 ? column.weight_q8 : column.weight_q8 * (kRimQ8 - r) / kFadeQ8;
 }
 
-float ThreeEighthsPowerOfRoot(float squared) {
-  const float root16 = std::sqrt(std::sqrt(std::sqrt(std::sqrt(squared))));
+// (re^2 + im^2)^(3/16), by square roots only because those round the same way everywhere.
+float PressedAmplitude(float re, float im) {
+  const float root16 = std::sqrt(std::sqrt(std::sqrt(std::sqrt(re * re + im * im))));
   return root16 * root16 * root16;
+}
+
+template <std::size_t N>
+void Smooth(const std::array<float, N>& from, std::array<float, N>* to) {
+  to->fill(0);
+  for (std::size_t i = 1; i + 1 < N; ++i) (*to)[i] = 0.25F * from[i - 1] + 0.5F * from[i] + 0.25F * from[i + 1];
 }
 
 }  // namespace
@@ -52,19 +59,24 @@ void ProjectionSpectrum::Compute(const ColumnGrid& grid) {
     }
   });
 
+  // Two real projections share one complex transform, one as the real and one as the imaginary part.
   std::array<Complex, kLength> line;
-  std::array<float, kBins> raw{};
-  for (std::size_t d = 0; d < kDirections; ++d) {
+  for (std::size_t d = 0; d < kDirections; d += 2) {
     line.fill({});
-    for (std::size_t i = 0; i < 2 * kReach; ++i) line[i].re = static_cast<float>(projection_q16_[d][i]);
+    for (std::size_t i = 0; i < 2 * kReach; ++i) {
+      line[i] = {static_cast<float>(projection_q16_[d][i]), static_cast<float>(projection_q16_[d + 1][i])};
+    }
     Fft<kLength>(line);
+    std::array<float, kBins> first{};
+    std::array<float, kBins> second{};
     for (std::size_t f = 0; f < kBins; ++f) {
-      raw[f] = ThreeEighthsPowerOfRoot(line[f].re * line[f].re + line[f].im * line[f].im);
+      const Complex& plus = line[f];
+      const Complex& minus = line[(kLength - f) % kLength];
+      first[f] = PressedAmplitude(plus.re + minus.re, plus.im - minus.im);
+      second[f] = PressedAmplitude(plus.im + minus.im, minus.re - plus.re);
     }
-    amplitude_[d].fill(0);
-    for (std::size_t f = 1; f + 1 < kBins; ++f) {
-      amplitude_[d][f] = 0.25F * raw[f - 1] + 0.5F * raw[f] + 0.25F * raw[f + 1];
-    }
+    Smooth(first, &amplitude_[d]);
+    Smooth(second, &amplitude_[d + 1]);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 2-D amplitude spectrum of a plan view, sampled on a polar grid of frequencies. Moving the view only turns phases,
 // so amplitudes stay; turning it shifts them along the direction axis. No Cartesian image in between that would prefer
-// some headings: the view is projected onto 64 directions and each projection transformed (projection-slice theorem:
+// some headings: the view is projected onto 128 directions and each projection transformed (projection-slice theorem:
 // Bracewell, "Strip integration in radio astronomy", Aust. J. Phys. 9, 1956; used for place recognition by Lu et al.,
 // "One RING to Rule Them All", ICRA 2022, with other features).
 #pragma once
@@ -16,8 +16,8 @@ namespace mapweld::place {
 
 class ProjectionSpectrum {
  public:
-  static constexpr std::size_t kDirections = 64;  // over half a turn; the spectrum repeats after it
-  static constexpr std::size_t kBins = 64;        // bin f: f / 128 cycles per metre
+  static constexpr std::size_t kDirections = 128;  // over half a turn; the spectrum repeats after it
+  static constexpr std::size_t kBins = 64;         // bin f: f / 128 cycles per metre
 
   // Cost: 64 integer multiply-adds per column within 35 m, then 64 transforms of length 128. Typically 0.6 ms.
   void Compute(const ColumnGrid& grid);
