@@ -17,8 +17,8 @@ int main(int argc, char** argv) {
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
   mapweld::eval::AddEvalCommand(app);
-  mapweld::sim::AddSimCommand(app);
-  mapweld::replay::AddReplayCommand(app);
+  mapweld::AddSimCommand(app);
+  mapweld::AddReplayCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

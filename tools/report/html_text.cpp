@@ -72,8 +72,8 @@ std::string Length(double m) {
   const double size = std::abs(m);
   if (size >= 99'950) return fmt::format("{} km", Count(static_cast<std::uint64_t>(std::llround(size / 1000))));
   if (size >= 999.5) return fmt::format("{:.1f} km", m / 1000);
-  if (size >= 9.995) return fmt::format("{:.0f} m", m);
-  if (size >= 0.995) return fmt::format("{:.2f} m", m);
+  if (size >= 9.95) return fmt::format("{:.0f} m", m);
+  if (size >= 0.995) return fmt::format("{:.1f} m", m);
   return fmt::format("{:.0f} cm", m * 100);
 }
 

@@ -14,7 +14,7 @@ std::string EscapeHtml(std::string_view text);
 std::string Count(std::uint64_t value);
 // "1 drive", "3 drives".
 std::string Plural(std::uint64_t count, std::string_view noun);
-// Metres as "12.3 km", "840 m", "1.25 m" or "12 cm", whatever reads best; a dash for what is no number.
+// Metres as "12.3 km", "840 m", "1.3 m" or "12 cm", whatever reads best; a dash for what is no number.
 std::string Length(double m);
 // "950 B", "12.3 kB", "4.56 MB"; powers of 1000.
 std::string Bytes(double bytes);

@@ -13,24 +13,56 @@ namespace {
 constexpr double kFinestPixel_m = 0.5;  // about the voxel of the map: finer pixels would only leave holes
 constexpr double kPixelsPerUnit = 2;    // for sharp screens
 constexpr double kGroundCell_m = 8;
-constexpr double kHighest_m = 14;  // the colour scale ends at the eaves of a four-storey house
 constexpr int kHeightLevels = 16;
 constexpr int kDensityLevels = 15;
 
 struct Range {
-  double low = 0;
-  double high = 0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void Include(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
 };
 
-// From the 0.1 % to the 99.9 % point. Sampled, so that a map of a whole city costs no more than one of a street.
-Range Bulk(const std::vector<MapPoint>& points, Eigen::Index axis) {
-  std::vector<float> values;
+// What to show along one axis: the trajectories, what was seen within a submap's radius of them, and the bulk of the
+// points, from the 0.1 % to the 99.9 % one.
+Range Shown(const std::vector<MapPoint>& points, const std::vector<std::vector<geom::Pose3>>& trajectories,
+            Eigen::Index axis) {
+  constexpr double kSubmapRadius_m = 50;
+  constexpr double kMargin_m = 6;
+  Range drives;
+  for (const auto& trajectory : trajectories) {
+    for (const geom::Pose3& pose : trajectory) drives.Include(pose.t(axis));
+  }
+  Range seen;
+  std::vector<float> sample;  // so that a whole city costs no more than a street
   const std::size_t step = points.size() / 200'000 + 1;
-  for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i].p_merged(axis));
-  if (values.empty()) return {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  const std::size_t cut = values.size() / 1000;
-  std::sort(values.begin(), values.end());
-  return {static_cast<double>(values[cut]), static_cast<double>(values[values.size() - 1 - cut])};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    seen.Include(static_cast<double>(points[i].p_merged(axis)));
+    if (i % step == 0) sample.push_back(points[i].p_merged(axis));
+  }
+  Range shown = drives;
+  if (!sample.empty()) {
+    std::sort(sample.begin(), sample.end());
+    const std::size_t cut = sample.size() / 1000;
+    shown.Include(static_cast<double>(sample[cut]));
+    shown.Include(static_cast<double>(sample[sample.size() - 1 - cut]));
+    shown.Include(std::max(seen.low, drives.low - kSubmapRadius_m));
+    shown.Include(std::min(seen.high, drives.high + kSubmapRadius_m));
+  }
+  if (!(std::isfinite(shown.low) && std::isfinite(shown.high))) return {-kMargin_m, kMargin_m};
+  return {shown.low - kMargin_m, shown.high + kMargin_m};
+}
+
+// Of all values; reorders them. Zero for none.
+template <class T>
+T Quantile(std::vector<T>* values, double share) {
+  if (values->empty()) return T{};
+  const auto rank = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));
+  std::nth_element(values->begin(), rank, values->end());
+  return *rank;
 }
 
 // Height of the ground over a grid of squares.
@@ -91,9 +123,9 @@ class Ground {
   std::vector<float> height_;
 };
 
-// From slate over grey-blue to ivory: quiet, so that the drives' colours stand out, and readable in print.
+// From slate over grey-green to ivory: quiet, so that the drives' colours stand out, and readable in print.
 std::vector<std::array<std::uint8_t, 4>> MapPalette() {
-  constexpr double kStops[4][3] = {{70, 88, 112}, {112, 136, 160}, {188, 196, 198}, {250, 240, 214}};
+  constexpr double kStops[4][3] = {{66, 84, 122}, {86, 140, 160}, {166, 190, 164}, {255, 238, 196}};
   std::vector<std::array<std::uint8_t, 4>> palette = {{0, 0, 0, 0}};
   for (int h = 0; h < kHeightLevels; ++h) {
     const double at = 3.0 * h / (kHeightLevels - 1);
@@ -104,7 +136,8 @@ std::vector<std::array<std::uint8_t, 4>> MapPalette() {
       for (std::size_t i = 0; i < 3; ++i) {
         color[i] = static_cast<std::uint8_t>(std::lround((1 - share) * kStops[stop][i] + share * kStops[stop + 1][i]));
       }
-      color[3] = static_cast<std::uint8_t>(255 * (0.25 + 0.75 * d / kDensityLevels));
+      // The ground is everywhere and would hide what stands on it.
+      color[3] = static_cast<std::uint8_t>(255 * (0.25 + 0.75 * d / kDensityLevels) * std::min(1.0, 0.45 + 0.2 * h));
       palette.push_back(color);
     }
   }
@@ -115,21 +148,7 @@ std::vector<std::array<std::uint8_t, 4>> MapPalette() {
 
 MapView FitView(const std::vector<MapPoint>& points, const std::vector<std::vector<geom::Pose3>>& trajectories,
                 double most_width, double most_height) {
-  constexpr double kMargin_m = 8;
-  Range range[2] = {Bulk(points, 0), Bulk(points, 1)};
-  for (const auto& trajectory : trajectories) {
-    for (const geom::Pose3& pose : trajectory) {
-      for (Eigen::Index axis = 0; axis < 2; ++axis) {
-        range[axis].low = std::min(range[axis].low, pose.t(axis));
-        range[axis].high = std::max(range[axis].high, pose.t(axis));
-      }
-    }
-  }
-  if (!(range[0].low <= range[0].high && range[1].low <= range[1].high)) range[0] = range[1] = {0, 0};
-  for (Range& r : range) {
-    r.low -= kMargin_m;
-    r.high += kMargin_m;
-  }
+  Range range[2] = {Shown(points, trajectories, 0), Shown(points, trajectories, 1)};
   // No flatter than 3:1, so that a single straight road still is a picture.
   double extent_x = range[0].high - range[0].low;
   double extent_y = range[1].high - range[1].low;
@@ -165,19 +184,21 @@ PaletteImage RenderMap(const std::vector<MapPoint>& points, const MapView& view)
     ++count[at];
     height[at] = std::max(height[at], point.p_merged.z() - ground.Below(point.p_merged));
   }
-  std::vector<std::uint32_t> occupied;
-  std::copy_if(count.begin(), count.end(), std::back_inserter(occupied), [](std::uint32_t n) { return n > 0; });
-  double full = 1;  // the count that is fully opaque: all but the densest hundredth stay below
-  if (!occupied.empty()) {
-    const auto rank = occupied.begin() + static_cast<std::ptrdiff_t>(occupied.size() * 97 / 100);
-    std::nth_element(occupied.begin(), rank, occupied.end());
-    full = std::max(2.0, static_cast<double>(*rank));
+  std::vector<std::uint32_t> counts;
+  std::vector<float> heights;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (count[i] == 0) continue;
+    counts.push_back(count[i]);
+    heights.push_back(height[i]);
   }
+  // The scales end where all but a few pixels are below, whatever the sensor and the town.
+  const double full = std::max(2.0, static_cast<double>(Quantile(&counts, 0.97)));
+  const double highest_m = std::clamp(static_cast<double>(Quantile(&heights, 0.98)), 2.0, 25.0);
   image.pixels.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
     if (count[i] == 0) continue;
     const double density = std::min(1.0, std::log1p(static_cast<double>(count[i])) / std::log1p(full));
-    const double h = std::clamp(static_cast<double>(height[i]) / kHighest_m, 0.0, 1.0);
+    const double h = std::clamp(static_cast<double>(height[i]) / highest_m, 0.0, 1.0);
     const int d = std::clamp(static_cast<int>(std::ceil(density * kDensityLevels)), 1, kDensityLevels);
     const int level = static_cast<int>(std::lround(std::sqrt(h) * (kHeightLevels - 1)));
     image.pixels[i] = static_cast<std::uint8_t>(1 + level * kDensityLevels + d - 1);

@@ -206,8 +206,8 @@ void WriteMergeOutput(const fs::path& folder, const std::vector<merge::Drive>& d
     for (const int drive : result.groups[g]) {
       const auto d = static_cast<std::size_t>(drive);
       const bool given = d < trajectories.size() && !trajectories[d].empty();
-      WriteTrajectory(file_names[d],
-                      given ? trajectories[d] : KeyframePoses(drives.at(d), result.merged_T_body.at(d)), &output);
+      WriteTrajectory(file_names[d], given ? trajectories[d] : KeyframePoses(drives.at(d), result.merged_T_body.at(d)),
+                      &output);
     }
   }
   output.RemoveLeftovers();

@@ -22,11 +22,17 @@ constexpr double kBadgeRadius = 10;
 
 using Drawing = std::vector<Eigen::Vector2d>;
 
+// Streets driven several times keep their lines apart: each is drawn a few units aside.
+Eigen::Vector2d Aside(std::size_t index) {
+  const double step = static_cast<double>(index % 3) - 1;
+  return {1.9 * step, -1.9 * step};
+}
+
 // Points closer than half a unit add nothing that can be seen.
-Drawing Path(const std::vector<geom::Pose3>& merged_T_body, const MapView& view) {
+Drawing Path(const std::vector<geom::Pose3>& merged_T_body, const MapView& view, const Eigen::Vector2d& aside) {
   Drawing path;
   for (const geom::Pose3& pose : merged_T_body) {
-    const Eigen::Vector2d p = view.ToDrawing(pose.t);
+    const Eigen::Vector2d p = view.ToDrawing(pose.t) + aside;
     if (path.empty() || (p - path.back()).norm() > 0.5 || &pose == &merged_T_body.back()) path.push_back(p);
   }
   return path;
@@ -69,11 +75,37 @@ std::string StartMarker(int drive, const Drawing& path, Drawing* taken) {
       start.x(), start.y(), color, best.x(), best.y(), kBadgeRadius, drive + 1);
 }
 
+// Bands along the keyframes of the first drive of each accepted pair that registration confirmed. A gap of some
+// keyframes does not break a band: not every match of a shared street is registered.
+std::string WeldBands(const ReportInput& input, const std::vector<int>& drives, const MapView& view) {
+  constexpr int kLongestGap = 12;
+  std::string bands;
+  for (const merge::Overlap& overlap : input.result->overlaps) {
+    if (!overlap.accepted || !std::binary_search(drives.begin(), drives.end(), overlap.drive_a)) continue;
+    const auto& merged_T_body = input.result->merged_T_body.at(static_cast<std::size_t>(overlap.drive_a));
+    std::vector<int> keyframes;
+    for (const merge::Loop& loop : overlap.loops) keyframes.push_back(loop.keyframe_a);
+    std::sort(keyframes.begin(), keyframes.end());
+    for (std::size_t i = 0; i < keyframes.size();) {
+      std::size_t end = i + 1;
+      while (end < keyframes.size() && keyframes[end] - keyframes[end - 1] <= kLongestGap) ++end;
+      Drawing band;
+      for (int k = keyframes[i]; k <= keyframes[end - 1]; ++k) {
+        band.push_back(view.ToDrawing(merged_T_body.at(static_cast<std::size_t>(k)).t));
+      }
+      if (band.size() == 1) band.push_back(band.front() + Eigen::Vector2d(0.1, 0));  // a lone one shows as a dot
+      bands += Polyline(band, "class=\"weld\"", "");
+      i = end;
+    }
+  }
+  return bands;
+}
+
 // The round length that takes about a sixth of the width.
 std::string ScaleBar(const MapView& view) {
   const double aim_m = view.width * view.m_per_unit / 6;
   double length_m = std::pow(10, std::floor(std::log10(aim_m)));
-  for (const double factor : {5.0, 2.0}) {
+  for (const double factor : {10.0, 5.0, 2.0}) {
     if (length_m * factor <= aim_m * 1.3) {
       length_m *= factor;
       break;
@@ -117,7 +149,7 @@ std::string GroupPicture(const ReportInput& input, std::size_t group, double wid
   std::string legend;
   Drawing taken;
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    const Drawing path = Path(trajectories[i], view);
+    const Drawing path = Path(trajectories[i], view, drives.size() > 1 ? Aside(i) : Eigen::Vector2d::Zero());
     if (path.empty()) continue;
     const std::string name = EscapeHtml(input.drives->at(static_cast<std::size_t>(drives[i])).name);
     casings += Polyline(path, "class=\"casing\"", "");
@@ -128,7 +160,7 @@ std::string GroupPicture(const ReportInput& input, std::size_t group, double wid
     markers += StartMarker(drives[i], path, &taken);
     legend += LegendEntry(input, drives[i]);
   }
-  svg += casings + lines + markers + ScaleBar(view);
+  svg += WeldBands(input, drives, view) + casings + lines + markers + ScaleBar(view);
   const std::string caption = drives.size() == 1
                                   ? fmt::format("<b>Map {}</b> one drive on its own", group + 1)
                                   : fmt::format("<b>Map {}</b> {}, {}", group + 1, Plural(drives.size(), "drive"),
@@ -157,8 +189,9 @@ std::string MapsSection(const ReportInput& input) {
   }
   return Section(
       "The merged map from above",
-      "Brighter is higher above the ground, stronger is denser; walls drawn twice side by side would be a bad "
-      "merge. Lines are the drives; each starts at the dot beside its number.",
+      "The cloud stands out more the higher and the denser it is; walls drawn twice side by side would be a bad "
+      "merge. Lines are the drives, each from the dot beside its number. Wide bands mark where registration "
+      "welded two drives together.",
       "<div class=\"maps\">\n" + pictures + "</div>\n" + more);
 }
 

@@ -37,13 +37,14 @@ std::string OverlapRow(const ReportInput& input, const merge::Overlap& overlap) 
     residuals.push_back(100 * loop.residual_m);
   }
   return fmt::format(
-      "<tr><td class=\"pair\">{} {}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td>"
+      "<tr><td class=\"pair\">{}</td><td class=\"pair\">{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td "
+      "class=\"n\">{}</td>"
       "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
       DriveLabel(input, overlap.drive_a), DriveLabel(input, overlap.drive_b), overlap.accepted ? "yes" : "no",
       overlap.accepted ? "\xE2\x9C\x93 accepted" : "\xE2\x9C\x97 rejected", EscapeHtml(overlap.test),
       overlap.reverse ? "opposite" : "same", Count(overlap.matches.size()), Count(overlap.loops.size()),
-      Length(overlap.length_m), Number(Median(ratios), 0), Number(Median(residuals), 1), Number(overlap.weight, 2));
+      Number(overlap.length_m, 0), Number(Median(ratios), 0), Number(Median(residuals), 1), Number(overlap.weight, 2));
 }
 
 // Shrinks by keeping the smallest distance of each block, so that a thin diagonal survives, and stretches the contrast.
@@ -75,7 +76,7 @@ PaletteImage Thumbnail(const merge::DifferenceMatrix& matrix) {
 
 std::string Card(const ReportInput& input, const merge::DifferenceMatrix& matrix, const merge::Overlap& overlap) {
   // Very long drives against short ones keep a shape that can be read.
-  const double aspect = std::clamp(static_cast<double>(matrix.rows) / matrix.cols, 0.4, 1.6);
+  const double aspect = std::clamp(static_cast<double>(matrix.rows) / matrix.cols, 0.5, 1.2);
   const double height = kThumbnailWidth * aspect;
   std::string marks;
   const auto mark = [&](int row, int column, std::string_view look) {
@@ -104,13 +105,14 @@ std::string OverlapsSection(const ReportInput& input) {
   std::string rows;
   for (std::size_t i = 0; i < sorted.size() && i < kMostRows; ++i) rows += OverlapRow(input, *sorted[i]);
   std::string table =
-      "<div class=\"scroll\"><table>\n<tr><th>Pair</th><th>Verdict</th><th>Decided by</th><th>Direction</th>"
-      "<th class=\"n\">Matches</th><th class=\"n\">Confirmed</th><th class=\"n\">Length</th>"
+      "<div class=\"scroll\"><table>\n<tr><th colspan=\"2\">Pair</th><th>Verdict</th><th>Decided "
+      "by</th><th>Direction</th>"
+      "<th class=\"n\">Matches</th><th class=\"n\">Confirmed</th><th class=\"n\">Length m</th>"
       "<th class=\"n\">Overlap %</th><th class=\"n\">Residual cm</th><th class=\"n\">Weight</th></tr>\n" +
       rows + "</table></div>\n";
   if (sorted.size() > kMostRows) {
-    table += fmt::format("<p class=\"how\">{} more rejected or accepted pairs are in overlaps.json.</p>\n",
-                         Count(sorted.size() - kMostRows));
+    table +=
+        fmt::format("<p class=\"how\">{} more pairs are in overlaps.json.</p>\n", Count(sorted.size() - kMostRows));
   }
   return Section(
       "Overlaps",

@@ -6,12 +6,14 @@ namespace mapweld::report {
 std::string_view ReportStyle() {
   return R"css(
 :root { color-scheme: light dark; --page: #ffffff; --panel: #f6f7f9; --ink: #1b2530; --faint: #66727f; --line: #dfe4ea;
-  --ground: #fbfbf9; --accent: #2f6fb3; --yes: #00745a; --no: #b14a00; --image: invert(1) hue-rotate(180deg); }
+  --ground: #fbfbf9; --accent: #2f6fb3; --yes: #00745a; --no: #b14a00; --weld: #ffcf4d;
+  --image: invert(1) hue-rotate(180deg) brightness(1.25) saturate(1.2); }
 @media (prefers-color-scheme: dark) { :root { --page: #0f141a; --panel: #171e26; --ink: #e7ecf1; --faint: #98a5b3;
-  --line: #2a343f; --ground: #0b0f14; --accent: #6ea8e0; --yes: #3ecfa5; --no: #ff9d57; --image: none; } }
+  --line: #2a343f; --ground: #0b0f14; --accent: #6ea8e0; --yes: #3ecfa5; --no: #ff9d57; --weld: #c9992e;
+  --image: none; } }
 @media print { :root { --page: #ffffff; --panel: #f6f7f9; --ink: #1b2530; --faint: #66727f; --line: #dfe4ea;
-  --ground: #fbfbf9; --accent: #2f6fb3; --yes: #00745a; --no: #b14a00; --image: invert(1) hue-rotate(180deg); }
-  section, figure, tr, .tile { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+  --ground: #fbfbf9; --accent: #2f6fb3; --yes: #00745a; --no: #b14a00; --weld: #ffcf4d;
+  --image: invert(1) hue-rotate(180deg) brightness(1.25) saturate(1.2); } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--ink); -webkit-text-size-adjust: 100%;
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, "DejaVu Sans", sans-serif; }
@@ -21,7 +23,7 @@ h2 { font-size: 20px; line-height: 1.3; margin: 0 0 2px; }
 .verdict { font-size: 19px; line-height: 1.4; margin: 0 0 22px; color: var(--ink); }
 .warning { margin: 0 0 20px; padding: 10px 14px; border-left: 4px solid var(--no); background: var(--panel);
   border-radius: 4px; }
-.how { margin: 0 0 14px; color: var(--faint); max-width: 84ch; }
+.how { margin: 0 0 14px; color: var(--faint); max-width: 96ch; }
 section { margin-top: 44px; }
 .tiles { display: grid; grid-template-columns: repeat(4, 1fr); gap: 12px; margin: 0; }
 @media (max-width: 860px) { .tiles { grid-template-columns: repeat(2, 1fr); } main { padding: 24px 16px; } }
@@ -41,6 +43,8 @@ figure { margin: 0; }
 .casing { fill: none; stroke: var(--ground); stroke-width: 5.5; stroke-linejoin: round; stroke-linecap: round;
   opacity: .75; }
 .drive { fill: none; stroke-linejoin: round; }
+.weld { fill: none; stroke: var(--weld); stroke-width: 15; stroke-linejoin: round; stroke-linecap: round;
+  opacity: .5; }
 .cased { stroke: var(--ground); stroke-width: 1.5; }
 .badge { font-size: 12px; font-weight: 700; fill: #10161c; text-anchor: middle; }
 .scale path { fill: none; stroke: var(--ink); stroke-width: 1.6; }
@@ -55,7 +59,7 @@ figcaption b { color: var(--ink); margin-right: 4px; }
 .legend .name { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .legend .faint { margin-left: auto; white-space: nowrap; }
 .faint { color: var(--faint); }
-.tag { display: inline-block; min-width: 20px; height: 20px; padding: 0 5px; border-radius: 10px; color: #10161c;
+.tag { display: inline-block; min-width: 22px; height: 20px; padding: 0 3px; border-radius: 10px; color: #10161c;
   font-size: 12px; line-height: 20px; font-weight: 700; text-align: center; flex: none; }
 .label { white-space: nowrap; margin-right: 10px; }
 .label .tag { margin-right: 6px; }
@@ -84,6 +88,16 @@ th:last-child, td:last-child { padding-right: 0; }
 .bar { background: var(--panel); border-radius: 3px; }
 .bar i { display: block; height: 14px; border-radius: 3px; background: var(--accent); }
 footer { margin-top: 48px; padding-top: 14px; border-top: 1px solid var(--line); color: var(--faint); font-size: 13px; }
+@media print { @page { margin: 14mm 12mm; }
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  body { font-size: 12px; } main { padding: 0; max-width: none; } section { margin-top: 24px; }
+  figure, tr, .tile, .bars, .how { break-inside: avoid; } h2, .how { break-after: avoid; }
+  .tiles { grid-template-columns: repeat(4, 1fr); gap: 8px; } .tile { padding: 7px 10px; } .tile dd { font-size: 19px; }
+  .map > svg { max-height: 118mm; } .map.half { grid-column: auto; }
+  .legend { grid-template-columns: repeat(3, 1fr); font-size: 11px; } .cards { grid-template-columns: repeat(4, 1fr); }
+  .card figcaption { font-size: 10px; } .scroll { overflow: visible; } table { font-size: 10.5px; }
+  th { font-size: 10px; } th, td:not(.n):not(.yes):not(.no) { white-space: normal; }
+  th, td { padding: 3px 7px 3px 0; } .pair .label { max-width: 130px; } }
 )css";
 }
 

@@ -11,7 +11,7 @@
 namespace mapweld::report {
 namespace {
 
-std::string Verdict(const ReportInput& input) {
+std::string GroupsSentence(const ReportInput& input) {
   const std::size_t drives = input.drives->size();
   if (drives == 0) return "No drives were given.";
   std::vector<std::size_t> maps;  // sizes of groups with more than one drive
@@ -41,6 +41,15 @@ std::string Verdict(const ReportInput& input) {
   return text + ".";
 }
 
+std::string Verdict(const ReportInput& input) {
+  std::string text = GroupsSentence(input);
+  if (!input.group_rmse_m.empty() && input.group_rmse_m.front()) {
+    text += fmt::format(" {} {} from the truth (rmse).", input.result->groups.size() == 1 ? "It is" : "The largest is",
+                        Length(*input.group_rmse_m.front()));
+  }
+  return text;
+}
+
 std::string Tile(std::string_view label, std::string_view value, std::string_view note = "") {
   return fmt::format("<div class=\"tile\"><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", label, value, note);
 }
@@ -53,8 +62,7 @@ std::string Tiles(const ReportInput& input) {
     keyframes += drive.keyframes.size();
     path_m += DriveLength(drive);
   }
-  const auto merged_groups = std::count_if(result.groups.begin(), result.groups.end(),
-                                           [](const std::vector<int>& group) { return group.size() > 1; });
+  const std::size_t largest = result.groups.empty() ? 0 : result.groups.front().size();
   const auto accepted = static_cast<std::size_t>(std::count_if(result.overlaps.begin(), result.overlaps.end(),
                                                                [](const merge::Overlap& o) { return o.accepted; }));
   std::size_t points = 0;
@@ -66,8 +74,7 @@ std::string Tiles(const ReportInput& input) {
 
   std::string tiles;
   tiles += Tile("Drives", Count(input.drives->size()), fmt::format("{} driven", Length(path_m)));
-  tiles += Tile("Maps", Count(result.groups.size()),
-                fmt::format("{} of several drives", Count(static_cast<std::uint64_t>(merged_groups))));
+  tiles += Tile("Maps", Count(result.groups.size()), fmt::format("{} in the largest", Plural(largest, "drive")));
   tiles += Tile("Overlaps", Count(accepted), fmt::format("{} rejected", Count(result.overlaps.size() - accepted)));
   tiles += Tile("Keyframes", Count(keyframes), "one every 5 m or so");
   tiles += Tile("Map points", Count(points), "after thinning");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "tools/report/html_text.hpp"
@@ -13,8 +15,16 @@ namespace {
 
 constexpr std::string_view kDash = "\xE2\x80\x93";
 
-std::string OptionalLength(const std::vector<std::optional<double>>& values, std::size_t i) {
-  return i < values.size() && values[i] ? Length(*values[i]) : std::string(kDash);
+// Columns keep one unit, so that figures compare at a glance.
+std::string Metres(double m) {
+  return Count(static_cast<std::uint64_t>(std::llround(std::max(0.0, m))));
+}
+std::string Kilobytes(double bytes) {
+  return Count(static_cast<std::uint64_t>(std::llround(bytes / 1000)));
+}
+
+std::string OptionalMetres(const std::vector<std::optional<double>>& values, std::size_t i) {
+  return i < values.size() && values[i] ? fmt::format("{:.2f}", *values[i]) : std::string(kDash);
 }
 
 bool AnyKnown(const std::vector<std::optional<double>>& values) {
@@ -37,14 +47,14 @@ std::string GroupsSection(const ReportInput& input) {
     rows += fmt::format(
         "<tr><td class=\"n\">{}</td><td class=\"wrap\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td>",
-        g + 1, members, Length(path_m), Count(KeyframeCount(input, group)), Count(input.maps->at(g).size()));
-    if (truth) rows += fmt::format("<td class=\"n\">{}</td>", OptionalLength(input.group_rmse_m, g));
+        g + 1, members, Metres(path_m), Count(KeyframeCount(input, group)), Count(input.maps->at(g).size()));
+    if (truth) rows += fmt::format("<td class=\"n\">{}</td>", OptionalMetres(input.group_rmse_m, g));
     rows += "</tr>\n";
   }
   const std::string table = fmt::format(
-      "<div class=\"scroll\"><table>\n<tr><th class=\"n\">Map</th><th>Drives</th><th class=\"n\">Driven</th>"
+      "<div class=\"scroll\"><table>\n<tr><th class=\"n\">Map</th><th>Drives</th><th class=\"n\">Driven m</th>"
       "<th class=\"n\">Keyframes</th><th class=\"n\">Points</th>{}</tr>\n{}</table></div>\n",
-      truth ? "<th class=\"n\">Rmse</th>" : "", rows);
+      truth ? "<th class=\"n\">Rmse m</th>" : "", rows);
   return Section("Groups",
                  "Drives in one row share one coordinate frame; between rows nothing is known, so each row has a frame "
                  "of its own.",
@@ -66,23 +76,23 @@ std::string DrivesSection(const ReportInput& input) {
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td>",
-        DriveLabel(input, static_cast<int>(d)), input.result->group_of.at(d) + 1, Length(DriveLength(drive)),
+        DriveLabel(input, static_cast<int>(d)), input.result->group_of.at(d) + 1, Metres(DriveLength(drive)),
         Duration(seconds), Count(drive.keyframes.size()), overlaps);
-    if (truth) rows += fmt::format("<td class=\"n\">{}</td>", OptionalLength(input.drive_rmse_m, d));
+    if (truth) rows += fmt::format("<td class=\"n\">{}</td>", OptionalMetres(input.drive_rmse_m, d));
     if (traffic) {
       const double bytes = d < input.drive_bytes.size() ? static_cast<double>(input.drive_bytes[d]) : 0;
       const double path_m = DriveLength(drive);
-      rows += fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>", Bytes(bytes),
-                          path_m > 0 ? Bytes(bytes / path_m * 1000) : std::string(kDash));
+      rows += fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>", Kilobytes(bytes),
+                          path_m > 0 ? Kilobytes(bytes / path_m * 1000) : std::string(kDash));
     }
     rows += "</tr>\n";
   }
   const std::string table = fmt::format(
-      "<div class=\"scroll\"><table>\n<tr><th>Drive</th><th class=\"n\">Map</th><th class=\"n\">Length</th>"
+      "<div class=\"scroll\"><table>\n<tr><th>Drive</th><th class=\"n\">Map</th><th class=\"n\">Length m</th>"
       "<th class=\"n\">Duration</th><th class=\"n\">Keyframes</th><th "
       "class=\"n\">Overlaps</th>{}{}</tr>\n{}</table></div>\n",
-      truth ? "<th class=\"n\">Rmse</th>" : "", traffic ? "<th class=\"n\">Sent</th><th class=\"n\">per km</th>" : "",
-      rows);
+      truth ? "<th class=\"n\">Rmse m</th>" : "",
+      traffic ? "<th class=\"n\">Sent kB</th><th class=\"n\">kB per km</th>" : "", rows);
   std::string how = "One row per recording, with the colour and number it has on the map.";
   if (truth) how += " Rmse is the position error after one alignment of its whole map to the truth.";
   return Section("Drives", how, table);

@@ -33,6 +33,7 @@ std::string DriveName(const DriveId& id) {
 
 void FleetStore::Add(const mapweldlcm::keyframe_t& message) {
   DriveData& drive = drives_[{message.agent_id, message.epoch}];
+  ++drive.keyframe_messages;
   const bool is_new = drive.keyframes.emplace(message.index, FromMessage(message)).second;
   ++(is_new ? counters_.keyframes : counters_.repeated_keyframes);
 }
@@ -43,6 +44,7 @@ void FleetStore::Add(const mapweldlcm::health_t& message) {
 
 void FleetStore::Add(const mapweldlcm::submap_chunk_t& message) {
   DriveData& drive = drives_[{message.agent_id, message.epoch}];
+  ++drive.chunk_messages;
   if (drive.submaps.contains(message.keyframe)) {
     ++counters_.repeated_chunks;
     return;
@@ -129,6 +131,18 @@ std::vector<DriveId> FleetStore::Ids() const {
 std::optional<mapweldlcm::health_t> FleetStore::Health(const DriveId& id) const {
   const auto found = drives_.find(id);
   return found == drives_.end() ? std::nullopt : found->second.health;
+}
+
+std::uint64_t FleetStore::KeyframeBytes(const DriveId& id) const {
+  const auto found = drives_.find(id);
+  const auto bytes = static_cast<std::uint64_t>(mapweldlcm::keyframe_t{}.getEncodedSize());
+  return found == drives_.end() ? 0 : found->second.keyframe_messages * bytes;
+}
+
+std::uint64_t FleetStore::SubmapBytes(const DriveId& id) const {
+  const auto found = drives_.find(id);
+  const auto bytes = static_cast<std::uint64_t>(mapweldlcm::submap_chunk_t{}.getEncodedSize());
+  return found == drives_.end() ? 0 : found->second.chunk_messages * bytes;
 }
 
 }  // namespace mapweld::serve

@@ -55,6 +55,9 @@ class FleetStore {
   [[nodiscard]] bool IsComplete(const DriveId& id) const;
   [[nodiscard]] std::vector<DriveId> Ids() const;
   [[nodiscard]] std::optional<mapweldlcm::health_t> Health(const DriveId& id) const;
+  // Payload of the messages that arrived, repeated ones included.
+  [[nodiscard]] std::uint64_t KeyframeBytes(const DriveId& id) const;
+  [[nodiscard]] std::uint64_t SubmapBytes(const DriveId& id) const;
   [[nodiscard]] const FleetCounters& counters() const { return counters_; }
 
  private:
@@ -67,6 +70,8 @@ class FleetStore {
     std::map<std::int32_t, PartialSubmap> partial;
     std::map<std::int32_t, merge::SubmapCloud> submaps;
     std::optional<mapweldlcm::health_t> health;
+    std::uint64_t keyframe_messages = 0;
+    std::uint64_t chunk_messages = 0;
   };
 
   std::map<DriveId, DriveData> drives_;

@@ -9,38 +9,26 @@
 #include <cstdio>
 #include <thread>
 
+#include "tools/report/outcome.hpp"
 #include "tools/serve/serve_output.hpp"
 
 namespace mapweld::serve {
 namespace {
 
 volatile std::sig_atomic_t g_stop = 0;
-void AskToStop(int) { g_stop = 1; }
+void AskToStop(int) {
+  g_stop = 1;
+}
 
-constexpr double kMergeEvery = 2.0;        // seconds at least between two merges ...
-constexpr double kMergeShare = 0.25;       // ... and at most this share of the time spent merging
+constexpr double kMergeEvery = 2.0;   // seconds at least between two merges ...
+constexpr double kMergeShare = 0.25;  // ... and at most this share of the time spent merging
 constexpr std::uint64_t kNewKeyframes = 20;
-constexpr int kMapSubmapStep = 4;          // every 20 m: submaps of 50 m radius cover the road with room to spare
 constexpr std::size_t kPosesSentBack = 16;  // newest keyframes of a drive, the agent's window
-constexpr double kFetchTimeout = 60.0;     // seconds without any progress
+constexpr double kFetchTimeout = 60.0;      // seconds without any progress
 
-double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// The submaps of the drives of one snapshot. Copies nothing; the store only ever adds submaps, and std::map keeps them
-// in place.
-class StoredSubmaps final : public merge::SubmapSource {
- public:
-  StoredSubmaps(FleetLink* link, const std::vector<DriveId>* ids) : link_(link), ids_(ids) {}
-  const merge::SubmapCloud* Find(merge::SubmapKey key) override {
-    return link_->WithStore([&](const FleetStore& store) {
-      return store.FindSubmap((*ids_)[static_cast<std::size_t>(key.drive)], key.keyframe);
-    });
-  }
-
- private:
-  FleetLink* link_;
-  const std::vector<DriveId>* ids_;
-};
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 class Silent final : public merge::Progress {
  public:
@@ -75,16 +63,15 @@ void Server::Run() {
     return;
   }
   SendBack(merged);
-  FetchMapSubmaps(merged);
+  FetchMap(merged);
+  fetched_s_ = Now();
   WriteOutput(merged);
 }
 
-bool Server::IsDue() const {
+bool Server::IsDue() {
   if (Now() - last_merge_s_ < std::max(kMergeEvery, merge_cost_s_ / kMergeShare)) return false;
-  auto* const link = const_cast<FleetLink*>(&link_);
-  const auto [keyframes, submaps] = link->WithStore([](const FleetStore& store) {
-    return std::pair(store.counters().keyframes, store.counters().submaps);
-  });
+  const auto [keyframes, submaps] = link_.WithStore(
+      [](const FleetStore& store) { return std::pair(store.counters().keyframes, store.counters().submaps); });
   return keyframes >= merged_keyframes_ + kNewKeyframes || submaps > merged_submaps_;
 }
 
@@ -134,48 +121,58 @@ void Server::SendBack(const Merged& merged) {
   }
 }
 
+// Until every wanted submap is there, or nothing has come for kFetchTimeout. Gives the number still missing.
+std::size_t Server::Fetch() {
+  double last_progress = Now();
+  std::size_t left = requester_.outstanding();
+  while (left > 0 && g_stop == 0 && Now() - last_progress < kFetchTimeout) {
+    requester_.Step(Requester::Clock::now());
+    ReportProgress();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const std::size_t now_left = requester_.outstanding();
+    if (now_left != left) last_progress = Now();
+    left = now_left;
+  }
+  return left;
+}
+
 // Merges from nothing, fetching what the merge asks for, until it asks for nothing more: the result depends on what the
 // agents drove, not on the order in which it came.
 Server::Merged Server::MergeForGood() {
   for (;;) {
     merge::MergeCache fresh;
     Merged merged = MergeOnce(&fresh);
-    if (merged.result.missing.empty() || g_stop > 1) return merged;
     WantMissing(merged);
-    double last_progress = Now();
-    std::size_t left = requester_.outstanding();
-    while (left > 0 && Now() - last_progress < kFetchTimeout) {
-      requester_.Step(Requester::Clock::now());
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      const std::size_t now_left = requester_.outstanding();
-      if (now_left != left) last_progress = Now();
-      left = now_left;
-    }
-    if (left > 0) {
-      fmt::print(stderr, "serve: {} submaps did not arrive within {:.0f} s; merging without them\n", left, kFetchTimeout);
-      return merged;
-    }
+    const std::size_t left = Fetch();
+    if (left > 0) fmt::print(stderr, "serve: {} submaps did not arrive; merging without them\n", left);
+    if (left > 0 || merged.result.missing.empty()) return merged;
   }
 }
 
-void Server::FetchMapSubmaps(const Merged& merged) {
+void Server::FetchMap(const Merged& merged) {
   for (std::size_t d = 0; d < merged.fleet.ids.size(); ++d) {
     std::vector<std::int32_t> keyframes;
-    for (std::size_t k = 0; k < merged.fleet.drives[d].keyframes.size(); k += kMapSubmapStep) {
+    for (std::size_t k = 0; k < merged.fleet.drives[d].keyframes.size(); k += kMapStep) {
       keyframes.push_back(static_cast<std::int32_t>(k));
     }
     requester_.Want(merged.fleet.ids[d], keyframes);
   }
-  double last_progress = Now();
-  std::size_t left = requester_.outstanding();
-  while (left > 0 && Now() - last_progress < kFetchTimeout) {
-    requester_.Step(Requester::Clock::now());
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    const std::size_t now_left = requester_.outstanding();
-    if (now_left != left) last_progress = Now();
-    left = now_left;
-  }
+  const std::size_t left = Fetch();
   if (left > 0) fmt::print(stderr, "serve: {} submaps of the map did not arrive; the map has gaps there\n", left);
+}
+
+void Server::WriteOutput(const Merged& merged) {
+  StoredSubmaps submaps(&link_, &merged.fleet.ids, kMapStep);
+  report::OutcomeInput input;
+  input.title = fmt::format("Map of {} vehicles", merged.fleet.drives.size());
+  input.drives = &merged.fleet.drives;
+  input.result = &merged.result;
+  input.submaps = &submaps;
+  input.truth = options_.truth;
+  input.traffic = Traffic(&link_, merged.fleet.ids);
+  input.seconds = {{"drives", drives_ended_s_ - started_s_}, {"submaps", fetched_s_ - drives_ended_s_}};
+  const report::Summary summary = report::WriteOutcome(options_.out, std::move(input));
+  fmt::print("{}report: {}\n", report::SummaryTable(summary), (options_.out / "report.html").string());
 }
 
 void Server::ReportProgress() {

@@ -35,13 +35,14 @@ class Server {
     merge::MergeResult result;
   };
 
-  [[nodiscard]] bool IsDue() const;
+  [[nodiscard]] bool IsDue();
   [[nodiscard]] bool AllEnded();
   Merged MergeOnce(merge::MergeCache* cache);
   void WantMissing(const Merged& merged);
   void SendBack(const Merged& merged);
   Merged MergeForGood();
-  void FetchMapSubmaps(const Merged& merged);
+  std::size_t Fetch();
+  void FetchMap(const Merged& merged);
   void WriteOutput(const Merged& merged);
   void ReportProgress();
 
@@ -54,6 +55,7 @@ class Server {
   std::size_t merged_submaps_ = 0;
   double started_s_ = 0;
   double drives_ended_s_ = 0;
+  double fetched_s_ = 0;
   double last_merge_s_ = 0;
   double merge_cost_s_ = 0;
   double last_progress_s_ = 0;

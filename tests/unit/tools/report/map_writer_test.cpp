@@ -82,24 +82,23 @@ TEST(MapWriter, WritesTheFilesOfEveryGroup) {
   test::FakeTown town(3, 20);
   const auto maps = Maps(&town);
   WriteMergeOutput(folder.path(), town.drives, town.result, maps);
-  EXPECT_THAT(
-      folder.Files(),
-      ElementsAre("group_1/map.pcd", "group_1/map.ply", "group_1/pose_graph.g2o", "group_1/poses/2024-05-03_car_a.tum",
-                  "group_1/poses/2024-05-03_car_a_kitti.txt", "group_1/poses/2024-05-04_car_b.tum",
-                  "group_1/poses/2024-05-04_car_b_kitti.txt", "group_2/map.pcd", "group_2/map.ply",
-                  "group_2/pose_graph.g2o", "group_2/poses/2024-05-05_car_c.tum",
-                  "group_2/poses/2024-05-05_car_c_kitti.txt", "groups.json", "overlaps.json"));
+  EXPECT_THAT(folder.Files(),
+              ElementsAre("group_1/map.pcd", "group_1/map.ply", "group_1/pose_graph.g2o", "group_2/map.pcd",
+                          "group_2/map.ply", "group_2/pose_graph.g2o", "groups.json", "overlaps.json",
+                          "trajectory_2024-05-03_car_a.kitti.txt", "trajectory_2024-05-03_car_a.tum",
+                          "trajectory_2024-05-04_car_b.kitti.txt", "trajectory_2024-05-04_car_b.tum",
+                          "trajectory_2024-05-05_car_c.kitti.txt", "trajectory_2024-05-05_car_c.tum"));
   const io::PointCloud ply = io::ReadPly(folder / "group_1/map.ply");
   const io::PointCloud pcd = io::ReadPcd(folder / "group_1/map.pcd");
   EXPECT_EQ(ply.points.size(), maps[0].size());
   EXPECT_EQ(ply.points, pcd.points);
   EXPECT_EQ(ply.colors, pcd.colors);
   EXPECT_EQ(std::set<io::Rgb>(ply.colors.begin(), ply.colors.end()), (std::set<io::Rgb>{DriveColor(0), DriveColor(1)}));
-  const auto tum = io::ReadTum(folder / "group_1/poses/2024-05-04_car_b.tum");
+  const auto tum = io::ReadTum(folder / "trajectory_2024-05-04_car_b.tum");
   ASSERT_EQ(tum.size(), 20U);
   EXPECT_EQ(tum[7].t, town.drives[1].keyframes[7].t);
   EXPECT_LT(geom::LocalCoordinates(tum[7].world_T_body, town.result.merged_T_body[1][7]).norm(), 1e-5);
-  EXPECT_EQ(io::ReadKittiPoses(folder / "group_1/poses/2024-05-04_car_b_kitti.txt").size(), 20U);
+  EXPECT_EQ(io::ReadKittiPoses(folder / "trajectory_2024-05-04_car_b.kitti.txt").size(), 20U);
 }
 
 TEST(MapWriter, WritesDensePosesWhereItIsGivenSome) {
@@ -108,8 +107,8 @@ TEST(MapWriter, WritesDensePosesWhereItIsGivenSome) {
   std::vector<std::vector<io::StampedPose>> dense(2);
   for (int i = 0; i < 33; ++i) dense[1].push_back({{i}, {}});
   WriteMergeOutput(folder.path(), town.drives, town.result, Maps(&town), dense);
-  EXPECT_EQ(io::ReadTum(folder / "group_1/poses/2024-05-03_car_a.tum").size(), 5U);
-  EXPECT_EQ(io::ReadTum(folder / "group_2/poses/2024-05-04_car_b.tum").size(), 33U);
+  EXPECT_EQ(io::ReadTum(folder / "trajectory_2024-05-03_car_a.tum").size(), 5U);
+  EXPECT_EQ(io::ReadTum(folder / "trajectory_2024-05-04_car_b.tum").size(), 33U);
 }
 
 TEST(MapWriter, WritesTheSameBytesTwice) {
@@ -132,10 +131,9 @@ TEST(MapWriter, RemovesWhatAnEarlierMergeLeftAndNothingElse) {
   folder.Put("group_photo/map.ply", "mine");
   test::FakeTown one(1, 5);
   WriteMergeOutput(folder.path(), one.drives, one.result, Maps(&one));
-  EXPECT_THAT(folder.Files(),
-              ElementsAre("group_1/map.pcd", "group_1/map.ply", "group_1/pose_graph.g2o",
-                          "group_1/poses/2024-05-03_car_a.tum", "group_1/poses/2024-05-03_car_a_kitti.txt",
-                          "group_2/notes.txt", "group_photo/map.ply", "groups.json", "overlaps.json"));
+  EXPECT_THAT(folder.Files(), ElementsAre("group_1/map.pcd", "group_1/map.ply", "group_1/pose_graph.g2o",
+                                          "group_2/notes.txt", "group_photo/map.ply", "groups.json", "overlaps.json",
+                                          "trajectory_2024-05-03_car_a.kitti.txt", "trajectory_2024-05-03_car_a.tum"));
   EXPECT_FALSE(std::filesystem::exists(folder / "group_7"));
 }
 
@@ -168,17 +166,17 @@ TEST(OverlapsJson, KeepsEveryDecisionAndItsReason) {
   ASSERT_EQ(json["overlaps"].size(), town.result.overlaps.size());
   const auto& first = json["overlaps"][0];
   const merge::Overlap& overlap = town.result.overlaps[0];
-  EXPECT_EQ(first["a"], "2024-05-03_car_a");
-  EXPECT_EQ(first["b"], "2024-05-04_car_b");
-  EXPECT_EQ(first["accepted"], true);
+  EXPECT_EQ(first["pair"][0], "2024-05-03_car_a");
+  EXPECT_EQ(first["pair"][1], "2024-05-04_car_b");
+  EXPECT_EQ(first["verdict"], "accepted");
   EXPECT_EQ(first["test"], "registration");
   EXPECT_EQ(first["group"], 1);
   EXPECT_EQ(first["matches"].size(), overlap.matches.size());
   EXPECT_EQ(first["loops"][0]["keyframe_b"], overlap.loops[0].keyframe_b);
-  EXPECT_EQ(first["a_T_b"][0][3], overlap.a_T_b.t.x());
-  EXPECT_EQ(first["a_T_b"][3], (nlohmann::json{0, 0, 0, 1}));
+  EXPECT_EQ(first["transform"][0][3], overlap.a_T_b.t.x());
+  EXPECT_EQ(first["transform"][3], (nlohmann::json{0, 0, 0, 1}));
   const auto& last = json["overlaps"].back();
-  EXPECT_EQ(last["accepted"], false);
+  EXPECT_EQ(last["verdict"], "rejected");
   EXPECT_TRUE(last["group"].is_null());
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "tools/merge/progress.hpp"
+
+namespace mapweld::merge {
+
+// Progress on stderr: one line that is written over on a terminal, one line per finished stage elsewhere.
+class TerminalProgress final : public Progress {
+ public:
+  explicit TerminalProgress(std::string command);
+  // What the next stages work on, for example the name of a recording; may be empty.
+  void SetSubject(std::string subject) { subject_ = std::move(subject); }
+  void Report(std::string_view stage, int done, int total) override;
+  // Ends an unfinished line.
+  void Finish();
+
+ private:
+  std::string command_;
+  std::string subject_;
+  bool terminal_;
+  bool line_open_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace mapweld::merge

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// mapweld serve -o OUT [--agents N] [--lcm-url URL] [--truth NAME=FILE]...
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mapweld::serve {
+
+void AddServeCommand(CLI::App& app);
+
+}  // namespace mapweld::serve
