@@ -31,7 +31,7 @@ TimeNs SensorClock::Nearest(std::uint64_t ticks, TimeNs to) const {
 
 void SensorClock::Start(std::uint64_t ticks, TimeNs receive) {
   const TimeNs before = sensor_ + offset_;
-  const DurationNs silence = std::max(receive - last_receive_, DurationNs{0});
+  const DurationNs silence = std::clamp(receive - last_receive_, DurationNs{0}, kLongestSilence);
   sensor_ = {static_cast<std::int64_t>(ticks) * options_.tick_ns};
   if (options_.mode == ClockMode::kReceive) {
     // After a restart of the sensor time goes on from where it was, even if the receive stamp was early.
@@ -97,7 +97,7 @@ Status SensorClock::ToTime(std::uint64_t ticks, TimeNs receive, TimeNs* out) {
       const DurationNs expected = receive - last_receive_;
       const std::int64_t missing = expected.ns - step.ns;
       step.ns += (missing >= 0 ? (missing + turn / 2) / turn : -((-missing + turn / 2) / turn)) * turn;
-      jump = Abs({expected.ns - step.ns}) > kJump;
+      jump = Abs({expected.ns - step.ns}) > kJump || step < DurationNs{-kJump.ns} || step > kLongestSilence;
     }
     if (jump) {
       ++counters_.jumps;

@@ -32,6 +32,7 @@ inline constexpr SensorClockOptions kXsens1usClock{ClockMode::kShared, 1000, 1UL
 class SensorClock {
  public:
   static constexpr DurationNs kJump = Milliseconds(1000);
+  static constexpr DurationNs kLongestSilence = Milliseconds(86'400'000);  // after more than a day it is a restart
   static constexpr int kResyncSamples = 8;
   static constexpr std::int64_t kSlewPpm = 200;              // crystals differ by less
   static constexpr DurationNs kSettle = Milliseconds(1000);  // until then the envelope may fall at once

@@ -196,5 +196,20 @@ TEST(FreeRunningClock, GoesOnWhenTheSensorRestarts) {
   EXPECT_GT(accepted, 30);
 }
 
+// A log whose recorded times leap by centuries must not add up to more than 64 bits hold.
+TEST(SharedClock, StaysFiniteWhenTheReceiveClockLeaps) {
+  SensorClock clock(kVlp16Clock);
+  TimeNs t;
+  for (int round = 0; round < 100; ++round) {
+    // Each round the counter starts again from 0 and is believed after a few readings.
+    for (std::uint64_t ticks = 3'000'000'000; ticks < 3'000'000'020; ++ticks) (void)clock.ToTime(ticks, {0}, &t);
+    for (std::uint64_t ticks = 0; ticks < 20; ++ticks) {
+      (void)clock.ToTime(ticks, {9'000'000'000'000'000'000}, &t);
+    }
+  }
+  EXPECT_GT(clock.counters().resyncs, 50U);
+  EXPECT_LT(t.ns, 1000 * SensorClock::kLongestSilence.ns);
+}
+
 }  // namespace
 }  // namespace mapweld::time
