@@ -39,6 +39,8 @@ struct VerifyConfig {
   double max_jump_rad = 0.09;
   double drift = 0.02;
   double step_m = 10;               // between the loops along an overlap
+  int keyframe_stride = 1;          // loops along an overlap are tried at keyframes 0, stride, 2 stride, ...: where
+                                    // submaps have to be fetched, all pairs of drives then want the same few
   double near_m = 15;               // keyframes closer than this must agree, or they speak against the overlap
   double reach_m = 30;              // keyframes up to this far apart may add to the evidence
   double min_total_evidence = 1.6;  // sum over the loops of an overlap

@@ -20,16 +20,17 @@ double Horizontal(const Pose3& pose) {
   return pose.t.head<2>().norm();
 }
 
-// The keyframe step_m further along the drive, or the last one; the same keyframe when there is none at least half as
-// far.
-int StepAlong(const Drive& drive, int keyframe, int direction, double step_m) {
-  int at = keyframe;
+// The keyframe step_m further along the drive, on the stride, or the last such one; the same keyframe when there is
+// none at least half as far.
+int StepAlong(const Drive& drive, int keyframe, int direction, const VerifyConfig& config) {
+  int best = keyframe;
   const int count = static_cast<int>(drive.keyframes.size());
-  while (at + direction >= 0 && at + direction < count &&
-         std::abs(Path(drive, at) - Path(drive, keyframe)) < step_m - 0.5) {
-    at += direction;
+  for (int at = keyframe + direction; at >= 0 && at < count; at += direction) {
+    if (at % config.keyframe_stride != 0) continue;
+    best = at;
+    if (std::abs(Path(drive, at) - Path(drive, keyframe)) >= config.step_m - 0.5) break;
   }
-  return std::abs(Path(drive, at) - Path(drive, keyframe)) < 0.4 * step_m ? keyframe : at;
+  return std::abs(Path(drive, best) - Path(drive, keyframe)) < 0.4 * config.step_m ? keyframe : best;
 }
 
 // One attempt of the walk.
@@ -60,9 +61,9 @@ class Walk {
   std::vector<Step> StepsFrom(const VerifiedLoop& from) const {
     std::vector<Step> steps;
     for (const int direction : {1, -1}) {
-      const int a = StepAlong(finder_->a(), from.a, direction, config_->step_m);
+      const int a = StepAlong(finder_->a(), from.a, direction, *config_);
       if (a != from.a) steps.push_back(Nearest(from, a, -1));
-      const int b = StepAlong(finder_->b(), from.b, direction, config_->step_m);
+      const int b = StepAlong(finder_->b(), from.b, direction, *config_);
       if (b != from.b) steps.push_back(Nearest(from, -1, b));
     }
     return steps;
@@ -75,7 +76,7 @@ class Walk {
     const int start = choose_a ? from.a : from.b;
     Step best;
     double best_m = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < static_cast<int>(drive.keyframes.size()); ++k) {
+    for (int k = 0; k < static_cast<int>(drive.keyframes.size()); k += config_->keyframe_stride) {
       if (std::abs(Path(drive, k) - Path(drive, start)) > 3 * config_->step_m) continue;
       Step step{choose_a ? k : a, choose_a ? b : k, {}, 0};
       step.predicted_a_T_b = finder_->Predict(from, step.a, step.b);

@@ -17,16 +17,17 @@ PairRefinement RefinePair(const std::vector<Drive>& drives, int a, int b, const 
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
   PairRefinement out;
   double next_m = 0;
-  for (std::size_t i = 0; i < merged_T_a.size(); ++i) {
+  const auto stride = static_cast<std::size_t>(config.verify.keyframe_stride);
+  for (std::size_t i = 0; i < merged_T_a.size(); i += stride) {
     if (drive_a.keyframes[i].path_m < next_m) continue;
     // Every local minimum of the distance along b: b may pass the place more than once.
     const auto distance = [&](std::size_t k) { return (merged_T_b[k].t - merged_T_a[i].t).head<2>().norm(); };
     bool tried = false;
-    for (std::size_t k = 0; k < merged_T_b.size(); ++k) {
+    for (std::size_t k = 0; k < merged_T_b.size(); k += stride) {
       const double here_m = distance(k);
       if (here_m > config.refine.near_m) continue;
-      if (k > 0 && distance(k - 1) <= here_m) continue;
-      if (k + 1 < merged_T_b.size() && distance(k + 1) < here_m) continue;
+      if (k >= stride && distance(k - stride) <= here_m) continue;
+      if (k + stride < merged_T_b.size() && distance(k + stride) < here_m) continue;
       tried = true;
       const int ka = static_cast<int>(i);
       const int kb = static_cast<int>(k);

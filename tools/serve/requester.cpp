@@ -5,9 +5,9 @@ namespace mapweld::serve {
 namespace {
 
 constexpr std::size_t kKeyframesAtOnce = 32;
-constexpr std::size_t kSubmapsAtOnce = 8;  // some 0.8 MB on their way per agent
+constexpr std::size_t kSubmapsAtOnce = 16;  // some 1.6 MB on their way per agent
 constexpr auto kKeyframePause = std::chrono::milliseconds(300);
-constexpr auto kSubmapPause = std::chrono::milliseconds(1500);
+constexpr auto kSubmapPause = std::chrono::milliseconds(3000);
 
 }  // namespace
 
