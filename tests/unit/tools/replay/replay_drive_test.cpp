@@ -180,10 +180,10 @@ TEST(ReplayDrive, RepeatsTheEndUntilTheAgentObeys) {
   agent.ignores_end_commands = 3;
   (void)Play(agent, 100);
   EXPECT_EQ(agent.end_commands, 4);
-  FakeAgent stubborn;
-  stubborn.ignores_end_commands = 1000;
-  EXPECT_THAT(sim::MessageOf([&] { (void)Play(stubborn, 100); }), HasSubstr("not ended its drive within 60 s"));
-  EXPECT_NEAR(stubborn.end_commands, 120, 30);
+  FakeAgent obstinate;
+  obstinate.ignores_end_commands = 1000;
+  EXPECT_THAT(sim::MessageOf([&] { (void)Play(obstinate, 100); }), HasSubstr("not ended its drive within 60 s"));
+  EXPECT_NEAR(obstinate.end_commands, 120, 30);
 }
 
 TEST(ReplayDrive, RefusesAnAgentThatHasAlreadyEnded) {
