@@ -49,8 +49,10 @@ Range Shown(const std::vector<MapPoint>& points, const std::vector<std::vector<g
     const std::size_t cut = sample.size() / 1000;
     shown.Include(static_cast<double>(sample[cut]));
     shown.Include(static_cast<double>(sample[sample.size() - 1 - cut]));
-    shown.Include(std::max(seen.low, drives.low - kSubmapRadius_m));
-    shown.Include(std::min(seen.high, drives.high + kSubmapRadius_m));
+    if (std::isfinite(drives.low)) {
+      shown.Include(std::max(seen.low, drives.low - kSubmapRadius_m));
+      shown.Include(std::min(seen.high, drives.high + kSubmapRadius_m));
+    }
   }
   if (!(std::isfinite(shown.low) && std::isfinite(shown.high))) return {-kMargin_m, kMargin_m};
   return {shown.low - kMargin_m, shown.high + kMargin_m};

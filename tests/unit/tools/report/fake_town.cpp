@@ -37,7 +37,7 @@ std::vector<geom::Vec3d> TownAround(double u0, double v0) {
       const double low_u = bu * kBlock_m + setback;
       const double low_v = bv * kBlock_m + setback;
       const double size = kBlock_m - 2 * setback;
-      for (double s = 0; s < 4 * size; s += 0.5) {
+      for (double s = 0; s < 4 * size; s += 1.0) {
         const double along = std::fmod(s, size);
         const int side = static_cast<int>(s / size);
         const double u = side == 0   ? low_u + along
@@ -49,12 +49,12 @@ std::vector<geom::Vec3d> TownAround(double u0, double v0) {
                          : side == 3 ? low_v + size - along
                                      : low_v;
         if (std::hypot(u - u0, v - v0) > 50 || std::fmod(along + 3 * side, 19) < 2) continue;  // gates between houses
-        for (double z = 0; z < height; z += 1.0) points.push_back(Street(u, v) + geom::Vec3d(0, 0, z));
+        for (double z = 0; z < height; z += 2.0) points.push_back(Street(u, v) + geom::Vec3d(0, 0, z));
       }
     }
   }
-  for (int i = -90; i <= 90; i += 3) {  // the road and its kerbs
-    for (int j = -90; j <= 90; j += 3) {
+  for (int i = -90; i <= 90; i += 6) {  // the road and its kerbs
+    for (int j = -90; j <= 90; j += 6) {
       const double u = u0 + i * 0.5;
       const double v = v0 + j * 0.5;
       if (std::hypot(u - u0, v - v0) < 45) points.push_back(Street(u, v));
