@@ -134,6 +134,10 @@ TEST_F(UdpmBusTest, RefusesToPublishWhatDoesNotFitOneDatagram) {
 }
 
 TEST_F(UdpmBusTest, CountsExactlyWhatTheKernelDropped) {
+  const int on = 1;
+  if (::setsockopt(bus_->fd(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on)) != 0) {
+    GTEST_SKIP() << "this system does not count what it drops (an emulator?)";
+  }
   const int small = 2304;
   ASSERT_EQ(::setsockopt(bus_->fd(), SOL_SOCKET, SO_RCVBUF, &small, sizeof(small)), 0);
   constexpr std::uint64_t kSent = 100;

@@ -75,6 +75,10 @@ TEST_F(UdpPortTest, EmptiesALargeBacklogInBatches) {
 }
 
 TEST_F(UdpPortTest, CountsExactlyWhatTheKernelDropped) {
+  const int on = 1;
+  if (::setsockopt(port_->fd(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on)) != 0) {
+    GTEST_SKIP() << "this system does not count what it drops (an emulator?)";
+  }
   const int small = 2304;
   ASSERT_EQ(::setsockopt(port_->fd(), SOL_SOCKET, SO_RCVBUF, &small, sizeof(small)), 0);
   constexpr std::uint64_t kSent = 200;
