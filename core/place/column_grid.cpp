@@ -75,6 +75,7 @@ Status ColumnGrid::Build(std::span<const submap::SubmapPoint> points, std::size_
     Cell& cell = cells_[at.cell];
     if (cell.lowest_around_q8 == kEmptyQ8) cell.lowest_around_q8 = LowestAround(at.cell);
     const std::int32_t height_q8 = at.z_q8 - cell.lowest_around_q8;
+    if (height_q8 >= kTopHeightQ8) continue;
     const std::int32_t weight =
         height_q8 >= kFullHeightQ8 ? kQ8 : kLowestWeightQ8 + (kQ8 - kLowestWeightQ8) * height_q8 / kFullHeightQ8;
     cell.weight_q8 += weight;

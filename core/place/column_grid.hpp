@@ -31,7 +31,8 @@ class ColumnGrid {
   static constexpr std::int32_t kReachQ8 = 50 * kQ8;        // cells cover |x|, |y| < 50 m
   static constexpr std::int32_t kLowestWeightQ8 = kQ8 / 4;  // of a point that has nothing below it
   static constexpr std::int32_t kFullHeightQ8 = kQ8 / 2;    // a point this high over its surroundings counts in full
-  static constexpr std::int32_t kMaxWeightQ8 = 16 * kQ8;    // 8 m of voxels on top of one another
+  static constexpr std::int32_t kTopHeightQ8 = 8 * kQ8;     // one this high counts no more: not every sensor sees it
+  static constexpr std::int32_t kMaxWeightQ8 = 32 * kQ8;    // of a cell
   static constexpr float kMaxCoordinate_m = 1000.0F;
 
   // kBadInput: a point that is not finite or farther than kMaxCoordinate_m from the origin, fewer than min_points
