@@ -13,7 +13,7 @@ struct BevPeak {
   double x_m = 0;  // position of b in the level frame of a
   double y_m = 0;
   double yaw_rad = 0;
-  double score = 0;  // normalised correlation, 0..1
+  double score = 0;  // how much of b stands where a stands too, 0..1 or so
 };
 
 // At most `most` peaks, best first, distinct by 4 m or 20 deg; shifts up to 24 m along each axis. Integer arithmetic:

@@ -12,7 +12,7 @@ namespace {
 using geom::Pose3;
 using geom::Vec3d;
 
-constexpr int kPeaks = 3;
+constexpr int kPeaks = 4;
 
 std::vector<Pose3> LevelPoses(const Drive& drive) {
   std::vector<Pose3> out;

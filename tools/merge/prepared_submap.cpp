@@ -123,9 +123,9 @@ void PreparedSubmap::FindShapes() {
 }
 
 void PreparedSubmap::DrawBev() {
-  static_assert(BevImage::kSize == kColumns);
-  bev_.cells.assign(kColumns * kColumns, 0);
-  for (std::size_t c = 0; c < kColumns * kColumns; ++c) {
+  static_assert(BevImage::kFine == kColumns && BevImage::kCoarse * 2 == kColumns);
+  std::vector<std::uint8_t> fine(kColumns * kColumns, 0);
+  for (std::size_t c = 0; c < fine.size(); ++c) {
     float low = std::numeric_limits<float>::max();
     float high = std::numeric_limits<float>::lowest();
     for (std::uint32_t k = point_begin_[c]; k < point_begin_[c + 1]; ++k) {
@@ -133,19 +133,46 @@ void PreparedSubmap::DrawBev() {
       high = std::max(high, points_[k].z());
     }
     const float share = std::clamp((high - low - kBevLow_m) / (kBevHigh_m - kBevLow_m), 0.0F, 1.0F);
-    bev_.cells[c] = static_cast<std::uint8_t>(std::lround(share * BevImage::kFull));
+    fine[c] = static_cast<std::uint8_t>(std::lround(share * BevImage::kFull));
   }
+  std::vector<std::uint8_t> coarse(BevImage::kCoarse * BevImage::kCoarse, 0);
+  for (std::size_t c = 0; c < fine.size(); ++c) {
+    std::uint8_t& to = coarse[c / kColumns / 2 * BevImage::kCoarse + c % kColumns / 2];
+    to = std::max(to, fine[c]);
+  }
+  bev_.fine_contrast = Contrast(fine, kColumns);
+  bev_.coarse_contrast = Contrast(coarse, BevImage::kCoarse);
   for (std::uint8_t value = BevImage::kFull; value > 0; --value) {
     std::vector<std::uint32_t> of_value;
-    for (std::uint32_t c = 0; c < kColumns * kColumns; ++c) {
-      if (bev_.cells[c] == value) of_value.push_back(c);
+    for (std::uint32_t c = 0; c < fine.size(); ++c) {
+      if (fine[c] == value) of_value.push_back(c);
     }
     for (const std::uint32_t c : MixedOrder(of_value)) {
       if (bev_.strongest.size() == BevImage::kStrongest) return;
-      bev_.strongest.push_back({static_cast<float>(c / kColumns) + 0.5F - kHalfSize_m,
-                                static_cast<float>(c % kColumns) + 0.5F - kHalfSize_m, value});
+      bev_.strongest.emplace_back(static_cast<float>(c / kColumns) + 0.5F - kHalfSize_m,
+                                  static_cast<float>(c % kColumns) + 0.5F - kHalfSize_m);
     }
   }
+}
+
+std::vector<std::int8_t> PreparedSubmap::Contrast(const std::vector<std::uint8_t>& image, std::size_t size) const {
+  const float cell_m = 2 * kHalfSize_m / static_cast<float>(size);
+  std::vector<bool> seen(image.size());
+  int cells = 0;
+  int sum = 0;
+  for (std::size_t c = 0; c < image.size(); ++c) {
+    const Eigen::Vector3f center((static_cast<float>(c / size) + 0.5F) * cell_m - kHalfSize_m,
+                                 (static_cast<float>(c % size) + 0.5F) * cell_m - kHalfSize_m, 0);
+    seen[c] = Covers(center);
+    cells += seen[c] ? 1 : 0;
+    sum += image[c];
+  }
+  const int twice_mean = cells > 0 ? (2 * sum + cells / 2) / cells : 0;
+  std::vector<std::int8_t> out(image.size(), BevImage::kUnseen);
+  for (std::size_t c = 0; c < image.size(); ++c) {
+    if (seen[c]) out[c] = static_cast<std::int8_t>(2 * image[c] - twice_mean);
+  }
+  return out;
 }
 
 void PreparedSubmap::ChooseSamples() {

@@ -19,17 +19,18 @@ struct Surfel {
   bool is_structure = false;  // tells one place from another: walls, poles, trees; not the ground
 };
 
-// Square image around the keyframe, 1 m cells, row = x. 0: nothing or ground, kFull: a tall structure.
+// What stands upright, seen from above, in square images around the keyframe, row = x.
 struct BevImage {
-  static constexpr int kSize = 128;
-  static constexpr int kFull = 7;
-  struct Cell {
-    float x, y;  // m, centre
-    std::uint8_t value;
-  };
-  std::vector<std::uint8_t> cells;  // kSize * kSize
-  std::vector<Cell> strongest;      // at most kStrongest, the highest values
-  static constexpr std::size_t kStrongest = 1200;
+  static constexpr int kFine = 128;   // cells of 1 m per side
+  static constexpr int kCoarse = 64;  // cells of 2 m per side
+  static constexpr int kFull = 7;     // value of a tall structure; ground and nothing are 0
+  static constexpr std::size_t kStrongest = 900;
+  static constexpr std::int8_t kUnseen = -128;
+  // Twice the value less twice its mean over the part that was seen. So a structure that falls on seen, empty ground
+  // speaks against a pose, and one that falls where nothing was seen says nothing.
+  std::vector<std::int8_t> fine_contrast;
+  std::vector<std::int8_t> coarse_contrast;
+  std::vector<Eigen::Vector2f> strongest;  // m, centres of the fine cells with the highest values
 };
 
 class PreparedSubmap {
@@ -68,6 +69,7 @@ class PreparedSubmap {
   void MakeSurfels();
   void FindShapes();
   void DrawBev();
+  [[nodiscard]] std::vector<std::int8_t> Contrast(const std::vector<std::uint8_t>& image, std::size_t size) const;
   void ChooseSamples();
 
   std::vector<Eigen::Vector3f> points_;      // by column
