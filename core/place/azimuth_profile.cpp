@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/place/trig_table.hpp"
-
 namespace mapweld::place {
 namespace {
 
@@ -14,63 +12,55 @@ constexpr std::int32_t kNearFadeQ8 = 15 * kQ8;  // the near zone fades out from 
 constexpr std::int32_t kNearEndQ8 = 25 * kQ8;   // ... to here
 constexpr std::int32_t kFarFromQ8 = 20 * kQ8;
 constexpr std::int32_t kFarEndQ8 = 50 * kQ8;
-constexpr auto kDirection = MakeDirectionTable<kSectors>();
 
-// Twice the area of the triangle between rim i and the point: positive when the point lies to its left.
-std::int32_t LeftOfRim(std::size_t i, const Column& c) {
-  return kDirection.x[i] * c.y_q8 - kDirection.y[i] * c.x_q8;
+// Azimuth in sectors times 256, 0..kSectors * 256. Own arithmetic, because a library's atan2 may differ between
+// machines. atan(t) ~ t (pi/4 + 0.273 (1 - t)) on 0..1: right to 0.22 degrees, a 25th of a sector.
+std::int32_t AzimuthQ8(const Column& c) {
+  const auto x = static_cast<float>(std::abs(c.x_q8));
+  const auto y = static_cast<float>(std::abs(c.y_q8));
+  const float t = std::min(x, y) / std::max(x, y);
+  constexpr float kEighth = static_cast<float>(kSectors) * kQ8 / 8;  // of a turn
+  constexpr float kBend = 0.273F * kEighth / 0.78539816F;
+  float azimuth = t * (kEighth + kBend * (1.0F - t));
+  if (y > x) azimuth = 2 * kEighth - azimuth;
+  if (c.x_q8 < 0) azimuth = 4 * kEighth - azimuth;
+  if (c.y_q8 < 0) azimuth = 8 * kEighth - azimuth;
+  return static_cast<std::int32_t>(azimuth);
 }
-
-// The rim at or just before the point, anticlockwise. A binary search, because a library's atan2 may differ between
-// machines.
-std::size_t RimBefore(const Column& c) {
-  const bool upper_half = c.y_q8 > 0 || (c.y_q8 == 0 && c.x_q8 > 0);
-  std::size_t low = upper_half ? 0 : kSectors / 2;
-  for (std::size_t step = kSectors / 4; step > 0; step /= 2) {
-    low += LeftOfRim(low + step, c) >= 0 ? step : 0;
-  }
-  return low;
-}
-
-// One zone's sums; integers, so that the order cannot matter.
-struct Zone {
-  std::array<std::int64_t, kSectors> sum_q16{};
-
-  void Add(std::size_t before, std::int32_t weight_q8, std::int32_t share_after_q8) {
-    sum_q16[before] += weight_q8 * (kQ8 - share_after_q8);
-    sum_q16[(before + 1) % kSectors] += weight_q8 * share_after_q8;
-  }
-  [[nodiscard]] std::array<float, kSectors> Pressed() const {
-    std::array<float, kSectors> pressed{};
-    for (std::size_t i = 0; i < kSectors; ++i) {
-      const float root = std::sqrt(static_cast<float>(sum_q16[i]));
-      pressed[i] = root * std::sqrt(root);
-    }
-    return pressed;
-  }
-};
 
 }  // namespace
 
-AzimuthProfile MakeAzimuthProfile(const ColumnGrid& grid) {
-  Zone near;
-  Zone far;
-  grid.ForEach([&near, &far](const Column& c) {
-    const auto x = static_cast<float>(c.x_q8);
-    const auto y = static_cast<float>(c.y_q8);
-    const auto r = static_cast<std::int32_t>(std::sqrt(x * x + y * y));
-    if (r < kNearFromQ8 || r >= kFarEndQ8) return;
-    const std::size_t before = RimBefore(c);
-    const auto from_before = static_cast<float>(LeftOfRim(before, c));
-    const auto to_after = static_cast<float>(-LeftOfRim((before + 1) % kSectors, c));
-    const auto share = static_cast<std::int32_t>(from_before / (from_before + to_after) * static_cast<float>(kQ8));
-    if (r < kNearEndQ8) {
-      const std::int32_t fade = std::min(kNearEndQ8 - r, kNearEndQ8 - kNearFadeQ8);
-      near.Add(before, c.weight_q8 * fade / (kNearEndQ8 - kNearFadeQ8), share);
-    }
-    if (r >= kFarFromQ8) far.Add(before, c.weight_q8, share);
-  });
-  return {.near = near.Pressed(), .far = far.Pressed()};
+void AzimuthProfile::Clear() {
+  near_q16_.fill(0);
+  far_q16_.fill(0);
+}
+
+void AzimuthProfile::Add(const Column& column) {
+  const std::int32_t r = column.range_q8;
+  if (r < kNearFromQ8 || r >= kFarEndQ8) return;
+  const std::int32_t azimuth_q8 = AzimuthQ8(column);
+  const std::size_t before = static_cast<std::size_t>(azimuth_q8 / kQ8) % kSectors;
+  const std::size_t after = (before + 1) % kSectors;
+  const std::int32_t share = azimuth_q8 % kQ8;
+  if (r < kNearEndQ8) {
+    const std::int32_t fade = std::min(kNearEndQ8 - r, kNearEndQ8 - kNearFadeQ8);
+    const std::int32_t weight = column.weight_q8 * fade / (kNearEndQ8 - kNearFadeQ8);
+    near_q16_[before] += weight * (kQ8 - share);
+    near_q16_[after] += weight * share;
+  }
+  if (r >= kFarFromQ8) {
+    far_q16_[before] += column.weight_q8 * (kQ8 - share);
+    far_q16_[after] += column.weight_q8 * share;
+  }
+}
+
+std::array<float, kSectors> AzimuthProfile::Pressed(const Sums& sums) {
+  std::array<float, kSectors> pressed{};
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    const float root = std::sqrt(static_cast<float>(sums[i]));
+    pressed[i] = root * std::sqrt(root);
+  }
+  return pressed;
 }
 
 }  // namespace mapweld::place

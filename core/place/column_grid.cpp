@@ -113,9 +113,13 @@ Column ColumnGrid::MakeColumn(std::size_t index) const {
   const Cell& cell = cells_[index];
   const auto x0 = static_cast<std::int32_t>(index % kSide) * kCellQ8 - kReachQ8;
   const auto y0 = static_cast<std::int32_t>(index / kSide) * kCellQ8 - kReachQ8;
-  return {.x_q8 = x0 + cell.x_moment_q16 / cell.weight_q8,
-          .y_q8 = y0 + cell.y_moment_q16 / cell.weight_q8,
-          .weight_q8 = std::min(cell.weight_q8, kMaxWeightQ8)};
+  Column column{.x_q8 = x0 + cell.x_moment_q16 / cell.weight_q8,
+                .y_q8 = y0 + cell.y_moment_q16 / cell.weight_q8,
+                .weight_q8 = std::min(cell.weight_q8, kMaxWeightQ8)};
+  const auto x = static_cast<float>(column.x_q8);
+  const auto y = static_cast<float>(column.y_q8);
+  column.range_q8 = static_cast<std::int32_t>(std::sqrt(x * x + y * y));
+  return column;
 }
 
 }  // namespace mapweld::place

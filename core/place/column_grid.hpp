@@ -22,6 +22,7 @@ inline constexpr int kQ8 = 256;
 struct Column {
   std::int32_t x_q8 = 0;  // centre of the weights, level frame
   std::int32_t y_q8 = 0;
+  std::int32_t range_q8 = 0;   // from the vehicle, rounded down
   std::int32_t weight_q8 = 0;  // points, each between kLowestWeightQ8 and 1; at most kMaxWeightQ8
 };
 

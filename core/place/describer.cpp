@@ -5,7 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "core/place/azimuth_profile.hpp"
 #include "core/place/fft.hpp"
 #include "core/place/normalize.hpp"
 
@@ -107,7 +106,13 @@ void FillDirections(const ProjectionSpectrum& spectrum, std::span<float, kSector
 Status Describer::Describe(const submap::Submap& submap, PlaceDescription* description) {
   const Status status = grid_.Build(submap.points.span(), kMinPoints);
   if (status != Status::kOk) return status;
-  spectrum_.Compute(grid_);
+  spectrum_.Clear();
+  azimuth_.Clear();
+  grid_.ForEach([this](const Column& column) {
+    spectrum_.Add(column);
+    azimuth_.Add(column);
+  });
+  spectrum_.Transform();
   DescribePlace(&description->descriptor);
   DescribeOrientation(&description->orientation);
   return Status::kOk;
@@ -133,9 +138,10 @@ void Describer::DescribeOrientation(OrientationSignature* signature) const {
   const auto near = all.subspan<kSectors, kSectors>();
   const auto far = all.subspan<2 * kSectors, kSectors>();
   FillDirections(spectrum_, directions);
-  const AzimuthProfile profile = MakeAzimuthProfile(grid_);
-  std::copy(profile.near.begin(), profile.near.end(), near.begin());
-  std::copy(profile.far.begin(), profile.far.end(), far.begin());
+  const auto near_profile = azimuth_.Near();
+  const auto far_profile = azimuth_.Far();
+  std::copy(near_profile.begin(), near_profile.end(), near.begin());
+  std::copy(far_profile.begin(), far_profile.end(), far.begin());
   for (const std::span<float> block : {std::span<float>(directions), std::span<float>(near), std::span<float>(far)}) {
     SubtractMean(block);
   }

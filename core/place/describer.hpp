@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/base/status.hpp"
+#include "core/place/azimuth_profile.hpp"
 #include "core/place/column_grid.hpp"
 #include "core/place/descriptor.hpp"
 #include "core/place/projection_spectrum.hpp"
@@ -32,6 +33,7 @@ class Describer {
 
   ColumnGrid grid_;
   ProjectionSpectrum spectrum_;
+  AzimuthProfile azimuth_;
 };
 
 }  // namespace mapweld::place

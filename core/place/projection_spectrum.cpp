@@ -16,15 +16,13 @@ constexpr std::int32_t kFadeQ8 = 20 * kQ8;
 static_assert(kRimQ8 < 35 * kQ8 + 1, "projections reach 36 m");
 constexpr auto kDirection = MakeDirectionTable<2 * ProjectionSpectrum::kDirections>();
 
-// Worst case of one bin: the strip of 2 m that feeds it touches fewer than 800 cells, all of the heaviest weight.
-static_assert(std::int64_t{800} * ColumnGrid::kMaxWeightQ8 * kQ8 < INT32_MAX);
+// Worst case: the strip of 1 m that falls into one cell touches fewer than 500 columns, all of the heaviest weight.
+static_assert(std::int64_t{500} * ColumnGrid::kMaxWeightQ8 * kQ8 < INT32_MAX);
 
 std::int32_t FadedWeight(const Column& column) {
-  const auto x = static_cast<float>(column.x_q8);
-  const auto y = static_cast<float>(column.y_q8);
-  const auto r = static_cast<std::int32_t>(std::sqrt(x * x + y * y));
-  if (r >= kRimQ8) return 0;
-  return r <= kRimQ8 - kFadeQ8 ? column.weight_q8 : column.weight_q8 * (kRimQ8 - r) / kFadeQ8;
+  const std::int32_t inside = kRimQ8 - column.range_q8;
+  if (inside <= 0) return 0;
+  return inside >= kFadeQ8 ? column.weight_q8 : column.weight_q8 * inside / kFadeQ8;
 }
 
 // (re^2 + im^2)^(3/16), by square roots only because those round the same way everywhere.
@@ -39,33 +37,44 @@ void Smooth(const std::array<float, N>& from, std::array<float, N>* to) {
   for (std::size_t i = 1; i + 1 < N; ++i) (*to)[i] = 0.25F * from[i - 1] + 0.5F * from[i] + 0.25F * from[i + 1];
 }
 
+// The projection with linear sharing between cells: 256 times the weight, less what belongs to the next cell.
+template <std::size_t N, class Slot>
+void Unpack(const std::array<std::uint64_t, N>& packed, Slot slot) {
+  std::int64_t from_before = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto weight = static_cast<std::int64_t>(packed[i] >> 32U);
+    const auto to_next = static_cast<std::int64_t>(packed[i] & 0xFFFFFFFFU);
+    slot(i) = static_cast<float>(weight * kQ8 - to_next + from_before);
+    from_before = to_next;
+  }
+}
+
 }  // namespace
 
-void ProjectionSpectrum::Compute(const ColumnGrid& grid) {
-  for (auto& row : projection_q16_) row.fill(0);
-  grid.ForEach([this](const Column& column) {
-    const std::int32_t weight = FadedWeight(column);
-    if (weight == 0) return;
-    std::array<std::uint32_t, kDirections> along_q8;  // in a loop of its own, which the compiler turns into SIMD
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      const std::int32_t along = (column.x_q8 * kDirection.x[d] + column.y_q8 * kDirection.y[d]) >> kDirectionShift;
-      along_q8[d] = static_cast<std::uint32_t>(along + static_cast<std::int32_t>(kReach) * kQ8);
-    }
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      const std::size_t cell = along_q8[d] / kQ8;
-      const auto fraction = static_cast<std::int32_t>(along_q8[d] % kQ8);
-      projection_q16_[d][cell] += weight * (kQ8 - fraction);
-      projection_q16_[d][cell + 1] += weight * fraction;
-    }
-  });
+void ProjectionSpectrum::Clear() {
+  for (auto& row : packed_) row.fill(0);
+}
 
+void ProjectionSpectrum::Add(const Column& column) {
+  const auto weight = static_cast<std::uint64_t>(FadedWeight(column));
+  if (weight == 0) return;
+  std::array<std::uint32_t, kDirections> along_q8;  // in a loop of its own, which the compiler turns into SIMD
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const std::int32_t along = (column.x_q8 * kDirection.x[d] + column.y_q8 * kDirection.y[d]) >> kDirectionShift;
+    along_q8[d] = static_cast<std::uint32_t>(along + static_cast<std::int32_t>(kReach) * kQ8);
+  }
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    packed_[d][along_q8[d] / kQ8] += (weight << 32U) + weight * (along_q8[d] % kQ8);
+  }
+}
+
+void ProjectionSpectrum::Transform() {
   // Two real projections share one complex transform, one as the real and one as the imaginary part.
   std::array<Complex, kLength> line;
   for (std::size_t d = 0; d < kDirections; d += 2) {
     line.fill({});
-    for (std::size_t i = 0; i < 2 * kReach; ++i) {
-      line[i] = {static_cast<float>(projection_q16_[d][i]), static_cast<float>(projection_q16_[d + 1][i])};
-    }
+    Unpack(packed_[d], [&line](std::size_t i) -> float& { return line[i].re; });
+    Unpack(packed_[d + 1], [&line](std::size_t i) -> float& { return line[i].im; });
     Fft<kLength>(line);
     std::array<float, kBins> first{};
     std::array<float, kBins> second{};

@@ -19,17 +19,21 @@ class ProjectionSpectrum {
   static constexpr std::size_t kDirections = 128;  // over half a turn; the spectrum repeats after it
   static constexpr std::size_t kBins = 64;         // bin f: f / 128 cycles per metre
 
-  // Cost: 64 integer multiply-adds per column within 35 m, then 64 transforms of length 128. Typically 0.6 ms.
-  void Compute(const ColumnGrid& grid);
+  // Clear, then Add every column of a view, then Transform. The order of the columns does not matter.
+  void Clear();
+  void Add(const Column& column);  // 128 integer multiply-adds if within 35 m
+  void Transform();                // 64 transforms of length 128: about 0.2 ms
 
-  // |F|^(3/8) at direction pi d / 64 and bin f, smoothed over neighbouring bins. f in 0..kBins - 2. The small exponent
+  // |F|^(3/8) at direction pi d / 128 and bin f, smoothed over neighbouring bins. f in 0..kBins - 2. The small exponent
   // keeps the few strong lines of a straight street from drowning the rest.
   [[nodiscard]] float At(std::size_t direction, std::size_t bin) const { return amplitude_[direction][bin]; }
 
  private:
   static constexpr std::size_t kLength = 128;  // 1 m cells along each projection
   static constexpr std::size_t kReach = 36;    // of them, on either side of the origin, can be hit
-  std::array<std::array<std::int32_t, 2 * kReach>, kDirections> projection_q16_;
+  // Per cell the sum of the weights (upper half) and the sum of weight times place inside the cell (lower half): one
+  // addition shares a column between two neighbouring cells.
+  std::array<std::array<std::uint64_t, 2 * kReach>, kDirections> packed_;
   std::array<std::array<float, kBins>, kDirections> amplitude_;
 };
 

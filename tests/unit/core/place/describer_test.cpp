@@ -182,7 +182,7 @@ TEST(PlaceDescriber, GivesTheVeryBytesItGaveOnTheFirstMachine) {
   const auto bytes = [](const auto& q) {
     return std::span(reinterpret_cast<const std::uint8_t*>(q.data()), q.size());  // NOLINT: int8 as bytes
   };
-  EXPECT_EQ(Crc32(bytes(d.orientation.q), Crc32(bytes(d.descriptor.q))), 1479970116U);
+  EXPECT_EQ(Crc32(bytes(d.orientation.q), Crc32(bytes(d.descriptor.q))), 2215372942U);
 }
 
 class RefusedSubmap : public ::testing::Test {
