@@ -18,8 +18,9 @@ void AgentPipeline::OnImu(const sensor::ImuSample& sample) {
 }
 
 void AgentPipeline::OnPacket(const sensor::LidarPacket& packet) {
-  // A scan that is still waiting while the next one is half full will not get its IMU samples any more.
-  if (scan_waits_ && packet.t - waiting_scan_.t_end > config_.imu_patience) {
+  // The IMU samples of a scan that still waits when the next one is complete will not come any more.
+  const bool late = packet.t - waiting_scan_.t_end > config_.imu_patience;
+  if (scan_waits_ && (late || accumulator_.Completes(packet))) {
     scan_waits_ = false;
     OnScan(waiting_scan_);
   }

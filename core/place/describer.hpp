@@ -13,12 +13,12 @@
 
 namespace mapweld::place {
 
-// Submap in, place description out. Owns its scratch memory (about 530 kB: keep it in static memory); no heap. The same
+// Submap in, place description out. Owns its scratch memory (about 940 kB: keep it in static memory); no heap. The same
 // set of points gives the same bytes, in whatever order they come and on whatever machine.
 //
 // This version is made by hand, without training; docs/descriptor.md has its formulas and what it measures.
-// Cost: proportional to the occupied 0.5 m columns within 35 m; 49152 points in as many columns are the worst case,
-// about 3 ms on one x86-64 core. A city street takes less than 1 ms.
+// Cost: two passes over the points, then 128 integer multiply-adds per occupied 0.5 m cell within 35 m. On one busy
+// x86-64 core 1.5 ms for a street of 18000 points, 2.3 ms for 31000, at worst 5 ms for 49152 points in all cells.
 class Describer {
  public:
   static constexpr std::size_t kMinPoints = 200;

@@ -3,6 +3,11 @@
 
 namespace mapweld::scan {
 
+bool ScanAccumulator::Completes(const sensor::LidarPacket& packet) const {
+  const bool passed_zero = packet.azimuth_first_cdeg < last_azimuth_cdeg_;
+  return open_ && (passed_zero || packet.t - scan_.t_begin > kMaxDuration);
+}
+
 Status ScanAccumulator::Add(const sensor::LidarPacket& packet, sensor::Scan* finished, bool* has_scan) {
   *has_scan = false;
   if (packet.t <= newest_packet_) {
@@ -11,8 +16,7 @@ Status ScanAccumulator::Add(const sensor::LidarPacket& packet, sensor::Scan* fin
   }
   newest_packet_ = packet.t;
 
-  const bool passed_zero = packet.azimuth_first_cdeg < last_azimuth_cdeg_;
-  if (open_ && (passed_zero || packet.t - scan_.t_begin > kMaxDuration)) *has_scan = Flush(finished);
+  if (Completes(packet)) *has_scan = Flush(finished);
   if (!open_) {
     scan_.points.clear();
     scan_.t_begin = packet.t;

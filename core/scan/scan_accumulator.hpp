@@ -16,6 +16,9 @@ class ScanAccumulator {
  public:
   static constexpr DurationNs kMaxDuration = Milliseconds(250);
 
+  // Would this packet end the revolution that is being collected?
+  [[nodiscard]] bool Completes(const sensor::LidarPacket& packet) const;
+
   // Takes one packet. When it begins a new revolution the finished one is copied to *finished and *has_scan is set.
   // kStale: the packet is older than the newest one (reordered or duplicated) and is dropped.
   // kFull: the revolution already holds kCap.scan_points; the points beyond are dropped and counted.

@@ -35,8 +35,8 @@ Status Validate(const mapweldlcm::pose_t& m) {
 
 Status Validate(const mapweldlcm::health_t& m) {
   const std::int64_t lowest =
-      std::min({m.t_ns, m.heap_calls + 1, m.lidar_packets, m.lidar_rejected, m.can_frames, m.imu_samples, m.imu_rejected,
-                m.kernel_drops, m.scans, m.scans_dropped, m.bytes_sent, m.bus_rejected});
+      std::min({m.t_ns, m.heap_calls + 1, m.lidar_packets, m.lidar_rejected, m.can_frames, m.imu_samples,
+                m.imu_rejected, m.kernel_drops, m.scans, m.scans_dropped, m.bytes_sent, m.bus_rejected});
   return OkIf(IsSender(m.agent_id, m.epoch) && Within<int>(m.mode, 0, 4) && lowest >= 0 && m.keyframes >= 0 &&
               m.submaps_sent >= 0 && IsSize(m.scan_ms_mean) && IsSize(m.scan_ms_max) && IsSize(m.path_m));
 }

@@ -48,7 +48,8 @@ TEST(MemoryBudget, NoPartGrewByMoreThanThreePercentOverItsPin) {
   const auto pinned = Pinned();
   for (const auto& [part, bytes] : Parts()) {
     std::printf("%s\t%zu\n", part.c_str(), bytes);
-    ASSERT_TRUE(pinned.contains(part)) << part << " has no pin in tests/memory/budget.txt";
+    EXPECT_TRUE(pinned.contains(part)) << part << " has no pin in tests/memory/budget.txt";
+    if (!pinned.contains(part)) continue;
     EXPECT_LE(static_cast<double>(bytes), 1.03 * static_cast<double>(pinned.at(part))) << part;
     EXPECT_GE(static_cast<double>(bytes), 0.90 * static_cast<double>(pinned.at(part)))
         << part << " shrank: lower its pin so that it cannot grow back unseen";

@@ -15,6 +15,7 @@ constexpr int kColumnsPerPacket = 24;
 constexpr int kBeams = 16;
 constexpr double kRampMs2 = 1.5;
 constexpr double kWaveLengthM = 60;
+constexpr float kReachM = 60;
 const geom::Pose3 kBodyTLidar{{0.10, 0.0, 0.35}, geom::Quatd::Identity()};
 
 double PathLength(double t_s, const StreetDriveConfig& config) {
@@ -76,7 +77,7 @@ sensor::ImuSample StreetDrive::Imu(double t_s) {
   sample.gyro_body = geom::LogSo3((before.q.conjugate() * after.q).normalized()) / (2 * h);
   sample.accel_body = now.q.conjugate() * ((after.t - 2 * now.t + before.t) / (h * h) + geom::Vec3d(0, 0, 9.81));
   sample.gyro_body.z() += config_.gyro_bias_z + 0.002 * Noise();
-  sample.accel_body.x() += config_.accel_bias_x + 0.02 * Noise();
+  sample.accel_body.z() += config_.accel_bias_z + 0.02 * Noise();
   return sample;
 }
 
@@ -89,9 +90,16 @@ double StreetDrive::Noise() {  // near-Gaussian: the sum of four uniform numbers
   return sum * std::sqrt(3.0);
 }
 
-float StreetDrive::Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const {
-  float nearest = 100;
+void StreetDrive::FindNearBoxes(float x) {
+  near_boxes_.clear();
   for (const Box& box : boxes_) {
+    if (box.low.x() < x + kReachM && box.high.x() > x - kReachM) (void)near_boxes_.TryPush(box);
+  }
+}
+
+float StreetDrive::Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const {
+  float nearest = kReachM;
+  for (const Box& box : near_boxes_) {
     float enter = 0;
     float leave = nearest;
     for (int axis = 0; axis < 3; ++axis) {
@@ -103,7 +111,7 @@ float StreetDrive::Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& dire
     }
     if (enter < leave && enter > 0) nearest = enter;
   }
-  return nearest < 100 ? nearest : 0;
+  return nearest < kReachM ? nearest : 0;
 }
 
 bool StreetDrive::Next(sensor::LidarPacket* packet, FixedVector<sensor::ImuSample, 16>* samples) {
@@ -120,6 +128,7 @@ bool StreetDrive::Next(sensor::LidarPacket* packet, FixedVector<sensor::ImuSampl
   packet->t = {FromSeconds(t0).ns + 1};
   packet->azimuth_first_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480);
   packet->azimuth_last_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480 + 460);
+  FindNearBoxes(static_cast<float>(World(t0).t.x()));
   for (int column = 0; column < kColumnsPerPacket; ++column) {
     const double t = t0 + column * kPacketS / kColumnsPerPacket;
     const geom::Pose3 world_T_lidar = World(t) * kBodyTLidar;

@@ -17,7 +17,7 @@ struct StreetDriveConfig {
   double weave_m = 1.5;  // lateral amplitude
   double range_noise_m = 0.02;
   double imu_hz = 200;
-  double accel_bias_x = 0.05;  // m/s^2
+  double accel_bias_z = 0.05;  // m/s^2; a horizontal one would be taken for a tilt at the start
   double gyro_bias_z = 0.002;  // rad/s
   bool corridor = false;       // endless smooth walls: nothing fixes the position along the street
   double imu_gap_from_s = -1;  // no IMU samples in this interval
@@ -44,11 +44,13 @@ class StreetDrive {
   };
   [[nodiscard]] geom::Pose3 World(double t_s) const;
   [[nodiscard]] sensor::ImuSample Imu(double t_s);
+  void FindNearBoxes(float x);
   [[nodiscard]] float Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const;
   double Noise();
 
   StreetDriveConfig config_;
   FixedVector<Box, 512> boxes_;
+  FixedVector<Box, 512> near_boxes_;  // within reach of the present packet
   std::uint64_t noise_state_ = 1;
   std::int64_t packet_ = 0;
   std::int64_t imu_ = 0;
