@@ -13,7 +13,7 @@
 
 namespace mapweld::place {
 
-// Submap in, place description out. Owns its scratch memory (about 940 kB: keep it in static memory); no heap. The same
+// Submap in, place description out. Owns its scratch memory (about 910 kB: keep it in static memory); no heap. The same
 // set of points gives the same bytes, in whatever order they come and on whatever machine.
 //
 // This version is made by hand, without training; docs/descriptor.md has its formulas and what it measures.
