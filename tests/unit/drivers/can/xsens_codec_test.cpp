@@ -181,6 +181,28 @@ TEST(XsensCodec, DropsAGroupInsideWhichThePortLostFrames) {
   EXPECT_EQ(PushAll(&codec, Group({.ticks = 75, .counter = 3}), &sample), 1);
 }
 
+// Neither stamps nor the port tell of the loss here; the frames themselves have to.
+TEST(XsensCodec, SeesFromTheFramesThatTwoGroupsWereJoined) {
+  for (const std::size_t kept :
+       {1U, 2U, 3U}) {  // frames of group 5 before the loss, which ends after SampleTime of group 6
+    XsensCodec codec({});
+    sensor::ImuSample sample;
+    for (std::uint32_t k = 0; k < 10; ++k) {
+      const int mark = static_cast<int>(k);
+      const auto group = Group(
+          {.ticks = 25 * k, .counter = static_cast<std::uint16_t>(k), .gyro = {mark, 0, 0}, .accel = {mark, 0, 0}});
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        if ((k == 5 && i >= kept) || (k == 6 && i == 0)) continue;
+        if (codec.Push(group[i], &sample) != Status::kOk) continue;
+        ASSERT_EQ(sample.t.ns, k * 2'500'000LL) << kept;
+        ASSERT_EQ(sample.gyro_body.x() * 512, mark);
+      }
+    }
+    EXPECT_EQ(codec.counters().samples, 8U) << kept;
+    EXPECT_EQ(codec.counters().torn_groups, 1U) << kept;
+  }
+}
+
 TEST(XsensCodec, CrossesTheWrapsOfBothCounters) {
   XsensCodec codec({});
   sensor::ImuSample sample;
