@@ -67,6 +67,10 @@ LoopTry LoopFinder::Judge(int a, int b, const Registration& registration, double
     out.test = "tilt";
   } else if (registration.Evidence() < least_evidence) {
     out.test = "overlap ratio";
+    if (registration.Overlap() >= verify.slide_overlap) {
+      out.answer = LoopTry::Answer::kUnclear;
+      out.test = "slides along the street";
+    }
   } else {
     out.answer = LoopTry::Answer::kSame;
   }
@@ -107,7 +111,7 @@ LoopTry LoopFinder::Check(int a, int b, const Pose3& predicted_a_T_b, double sla
   }
   const Registration registration = Register(*submap_a, *submap_b, predicted_a_T_b, config_->registration);
   out = Judge(a, b, registration, config_->verify.loop_evidence);
-  if (out.answer != LoopTry::Answer::kSame) return out;
+  if (out.answer == LoopTry::Answer::kDifferent) return out;
   const Pose3 jump = predicted_a_T_b.Inverse() * registration.a_T_b;
   if (jump.t.norm() > slack_m || geom::LogSo3(jump.q).norm() > config_->verify.max_jump_rad) {
     out.answer = LoopTry::Answer::kDifferent;

@@ -24,7 +24,8 @@ struct VerifiedLoop {
 };
 
 struct LoopTry {
-  enum class Answer { kSame, kDifferent, kMissing };
+  // kUnclear: nothing speaks against it, but it could as well lie a few metres further along the street.
+  enum class Answer { kSame, kUnclear, kDifferent, kMissing };
   Answer answer = Answer::kDifferent;
   const char* test = "";  // that refused it
   VerifiedLoop loop;      // the pose is set unless kMissing, even when refused

@@ -31,8 +31,9 @@ struct ZoneConfig {
 // When a pair of submaps shows the same place, and when a pair of drives overlaps.
 struct VerifyConfig {
   int seeds_per_zone = 3;       // matches tried before a zone is given up
-  double seed_evidence = 0.30;  // of the first loop of a zone; see Registration::Evidence
-  double loop_evidence = 0.22;  // of a loop whose pose was predicted by a verified neighbour
+  double seed_evidence = 0.22;  // of the first loop of a zone; see Registration::Evidence
+  double loop_evidence = 0.12;  // of a loop whose pose was predicted by a verified neighbour
+  double slide_overlap = 0.58;  // overlap without evidence from which on a pair says nothing: a bare street
   double min_covered_share = 0.25;
   double max_tilt_rad = 0.09;
   double max_jump_m = 3.0;  // between a predicted and a registered pose, plus drift
@@ -43,7 +44,7 @@ struct VerifyConfig {
                                     // submaps have to be fetched, all pairs of drives then want the same few
   double near_m = 15;               // keyframes closer than this must agree, or they speak against the overlap
   double reach_m = 30;              // keyframes up to this far apart may add to the evidence
-  double min_total_evidence = 1.6;  // sum over the loops of an overlap
+  double min_total_evidence = 1.2;  // sum over the loops of an overlap
   int min_loops = 3;
   double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
 };

@@ -110,6 +110,9 @@ class Walk {
         ++out_.missing;
         if (is_near) open->push_back({step.a, step.b, step.predicted_a_T_b, 0, 0, 0});
         return;
+      case LoopTry::Answer::kUnclear:
+        if (is_near) open->push_back(answer.loop);
+        return;
       case LoopTry::Answer::kSame:
         out_.loops.push_back(answer.loop);
         out_.evidence += answer.loop.evidence;
@@ -132,9 +135,17 @@ class Walk {
 
 // Which of two refusals came further.
 int Rank(const std::string& test) {
-  constexpr const char* kOrder[] = {"no likeness",     "registration",   "little in common", "tilt",
-                                    "overlap ratio",   "odometry",       "contradiction",    "too little evidence",
-                                    "too few matches", "submaps missing"};
+  constexpr const char* kOrder[] = {"no likeness",
+                                    "registration",
+                                    "little in common",
+                                    "tilt",
+                                    "overlap ratio",
+                                    "slides along the street",
+                                    "odometry",
+                                    "contradiction",
+                                    "too little evidence",
+                                    "too few matches",
+                                    "submaps missing"};
   const auto* at = std::find(std::begin(kOrder), std::end(kOrder), test);
   return static_cast<int>(at - std::begin(kOrder));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace mapweld::merge {
 namespace {
@@ -125,12 +126,14 @@ void Judge(const PreparedSubmap& a, const PreparedSubmap& b, const RegistrationC
   const int found = of_a.found + of_b.found;
   out->residual_m = found > 0 ? std::sqrt((of_a.squares + of_b.squares) / found) : 0;
   double chance = 0;
-  constexpr int kDecoys = 8;
-  for (int i = 0; i < kDecoys; ++i) {
-    const double angle_rad = 2 * 3.14159265358979 * i / kDecoys;
-    Pose3 decoy = out->a_T_b;
-    decoy.t += config.decoy_distance_m * Vec3d(std::cos(angle_rad), std::sin(angle_rad), 0);
-    chance += CountPartners(a, b, decoy, config.partner_distance_m, 4).Share() / kDecoys;
+  constexpr int kDirections = 8;
+  for (const double distance_m : {0.5 * config.decoy_distance_m, config.decoy_distance_m}) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle_rad = 2 * std::numbers::pi * i / kDirections;
+      Pose3 decoy = out->a_T_b;
+      decoy.t += distance_m * Vec3d(std::cos(angle_rad), std::sin(angle_rad), 0);
+      chance = std::max(chance, CountPartners(a, b, decoy, config.partner_distance_m, 2).Share());
+    }
   }
   out->chance = chance;
 }

@@ -20,7 +20,7 @@ struct RegistrationConfig {
   double tilt_sigma_rad = 0.03;     // how level two submaps of one place are
   double kernel_sigma = 2.0;        // of the Geman-McClure kernel, in standard deviations of the shapes
   double partner_distance_m = 0.5;  // closer than this, two points are the same thing
-  double decoy_distance_m = 6;      // how far away chance is measured
+  double decoy_distance_m = 8;      // how far away chance is measured, also at half of this
 };
 
 struct Registration {
@@ -29,7 +29,7 @@ struct Registration {
   // Shares of structure points that found a partner, among those where the other submap has seen anything at all.
   double overlap_of_a = 0;
   double overlap_of_b = 0;
-  double chance = 0;  // overlap_of_b when b is displaced: how easily points find partners here
+  double chance = 0;  // the greatest overlap_of_b when b is displaced: along a bare street as great as here
   int covered = 0;    // structure samples of a and b, together, that could have found a partner
   double covered_share = 0;
   double residual_m = 0;                          // rms distance of partners across the shapes
