@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
@@ -17,10 +19,15 @@ int main(int argc, char** argv) {
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
   mapweld::eval::AddEvalCommand(app);
-  mapweld::AddSimCommand(app);
-  mapweld::AddReplayCommand(app);
+  mapweld::sim::AddSimCommand(app);
+  mapweld::replay::AddReplayCommand(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // A mistyped option is what went wrong, even where it leaves another one without a value.
+    const std::vector<std::string> unknown = app.remaining(true);
+    unknown.empty() ? app.exit(error) : app.exit(CLI::ExtrasError(unknown));
+    return 2;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {

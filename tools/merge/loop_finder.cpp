@@ -58,7 +58,8 @@ Pose3 LoopFinder::Predict(const VerifiedLoop& from, int to_a, int to_b) const {
 LoopTry LoopFinder::Judge(int a, int b, const Registration& registration, double least_evidence) const {
   const VerifyConfig& verify = config_->verify;
   LoopTry out;
-  out.loop = {a, b, registration.a_T_b, registration.Evidence(), registration.Overlap(), registration.residual_m};
+  out.loop = {a, b, registration.a_T_b, registration.Evidence(), registration.Overlap(), registration.residual_m,
+              registration.torn_share};
   if (!registration.converged) {
     out.test = "registration";
   } else if (registration.covered_share < verify.min_covered_share) {
@@ -103,7 +104,7 @@ LoopTry LoopFinder::Check(int a, int b, const Pose3& predicted_a_T_b, double sla
   const auto submap_a = Submap({index_a_, a});
   const auto submap_b = Submap({index_b_, b});
   LoopTry out;
-  out.loop = {a, b, predicted_a_T_b, 0, 0, 0};
+  out.loop = {a, b, predicted_a_T_b, 0, 0, 0, 1};
   if (submap_a == nullptr || submap_b == nullptr) {
     out.answer = LoopTry::Answer::kMissing;
     out.test = "submaps missing";

@@ -21,6 +21,7 @@ struct VerifiedLoop {
   double evidence = 0;
   double overlap_ratio = 0;
   double residual_m = 0;
+  double torn_share = 1;  // see Registration
 };
 
 struct LoopTry {

@@ -31,8 +31,8 @@ struct ZoneConfig {
 // When a pair of submaps shows the same place, and when a pair of drives overlaps.
 struct VerifyConfig {
   int seeds_per_zone = 3;       // matches tried before a zone is given up
-  double seed_evidence = 0.22;  // of the first loop of a zone; see Registration::Evidence
-  double loop_evidence = 0.12;  // of a loop whose pose was predicted by a verified neighbour
+  double seed_evidence = 0.10;  // of the first loop of a zone; see Registration::Evidence
+  double loop_evidence = 0.05;  // of a loop whose pose was predicted by a verified neighbour
   double slide_overlap = 0.58;  // overlap without evidence from which on a pair says nothing: a bare street
   double min_covered_share = 0.25;
   double max_tilt_rad = 0.09;
@@ -44,9 +44,11 @@ struct VerifyConfig {
                                     // submaps have to be fetched, all pairs of drives then want the same few
   double near_m = 15;               // keyframes closer than this must agree, or they speak against the overlap
   double reach_m = 30;              // keyframes up to this far apart may add to the evidence
-  double min_total_evidence = 1.2;  // sum over the loops of an overlap
+  double min_total_evidence = 0.5;  // sum over the loops of an overlap
   int min_loops = 3;
+  double persist_m = 50;            // how far the walk along an overlap goes on without a loop: a look-alike is small
   double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
+  double max_torn_share = 0.2;      // mean over the near keyframe pairs; see Registration::torn_share
 };
 
 struct WeightConfig {

@@ -41,6 +41,12 @@ struct Step {
   double path_m = 0;  // of odometry behind the prediction
 };
 
+// Where the walk stands: at a loop, or at a pose carried on from one by odometry over doubt_m.
+struct Stand {
+  VerifiedLoop pose;
+  double doubt_m = 0;
+};
+
 class Walk {
  public:
   Walk(LoopFinder* finder, const VerifyConfig& config) : finder_(finder), config_(&config) {}
@@ -48,11 +54,14 @@ class Walk {
   Hypothesis Run(const VerifiedLoop& seed) {
     out_.loops.push_back(seed);
     out_.near_pairs = 1;
+    out_.torn = seed.torn_share;
     out_.evidence = seed.evidence;
     tried_.emplace_back(seed.a, seed.b);
-    std::vector<VerifiedLoop> open{seed};  // also holds poses taken on trust where a submap is missing
+    std::vector<Stand> open{{seed, 0}};
     for (std::size_t i = 0; i < open.size(); ++i) {
-      for (const Step& step : StepsFrom(open[i])) Try(step, &open);
+      const double doubt_m = open[i].doubt_m;
+      if (doubt_m > config_->persist_m) continue;
+      for (const Step& step : StepsFrom(open[i].pose)) Try(step, doubt_m + step.path_m, &open);
     }
     return std::move(out_);
   }
@@ -97,34 +106,46 @@ class Walk {
     });
   }
 
-  void Try(const Step& step, std::vector<VerifiedLoop>* open) {
+  // A look-alike agrees for a few steps, then the places differ while the odometries still run side by side. So the
+  // walk goes on after a failure, to count how much of what should agree does not.
+  void Try(const Step& step, double doubt_m, std::vector<Stand>* open) {
     const double distance_m = Horizontal(step.predicted_a_T_b);
     if (distance_m > config_->reach_m || WasTried(step)) return;
     tried_.emplace_back(step.a, step.b);
     if (!finder_->VolumesMeet(step.a, step.b, step.predicted_a_T_b)) return;
-    const LoopTry answer =
-        finder_->Check(step.a, step.b, step.predicted_a_T_b, config_->max_jump_m + config_->drift * step.path_m);
+    const double slack_m = config_->max_jump_m + config_->drift * doubt_m;
+    const LoopTry answer = finder_->Check(step.a, step.b, step.predicted_a_T_b, slack_m);
     const bool is_near = distance_m <= config_->near_m;
+    VerifiedLoop predicted;
+    predicted.a = step.a;
+    predicted.b = step.b;
+    predicted.a_T_b = step.predicted_a_T_b;
     switch (answer.answer) {
       case LoopTry::Answer::kMissing:
         ++out_.missing;
-        if (is_near) open->push_back({step.a, step.b, step.predicted_a_T_b, 0, 0, 0});
+        if (is_near) open->push_back({predicted, 0});
         return;
       case LoopTry::Answer::kUnclear:
-        if (is_near) open->push_back(answer.loop);
+        if (is_near) open->push_back({answer.loop, doubt_m});
         return;
       case LoopTry::Answer::kSame:
         out_.loops.push_back(answer.loop);
         out_.evidence += answer.loop.evidence;
-        if (is_near) ++out_.near_pairs;
-        open->push_back(answer.loop);
+        if (is_near) CountNear(answer.loop);
+        open->push_back({answer.loop, 0});
         return;
       case LoopTry::Answer::kDifferent:
         if (!is_near) return;
-        ++out_.near_pairs;
+        CountNear(answer.loop);
         ++out_.contradictions;
+        open->push_back({predicted, doubt_m});
         return;
     }
+  }
+
+  void CountNear(const VerifiedLoop& loop) {
+    ++out_.near_pairs;
+    out_.torn += loop.torn_share;
   }
 
   LoopFinder* finder_;
@@ -143,6 +164,7 @@ int Rank(const std::string& test) {
                                     "slides along the street",
                                     "odometry",
                                     "contradiction",
+                                    "look-alike",
                                     "too little evidence",
                                     "too few matches",
                                     "submaps missing"};
@@ -162,6 +184,8 @@ bool OdometryAllows(const LoopFinder& finder, const VerifiedLoop& x, const Verif
 void Decide(const VerifyConfig& config, Hypothesis* hypothesis) {
   if (hypothesis->contradictions > config.max_contradiction * hypothesis->near_pairs) {
     hypothesis->test = "contradiction";
+  } else if (hypothesis->torn > config.max_torn_share * hypothesis->near_pairs) {
+    hypothesis->test = "look-alike";
   } else if (static_cast<int>(hypothesis->loops.size()) < config.min_loops) {
     hypothesis->test = hypothesis->missing > 0 ? "submaps missing" : "too few matches";
   } else if (hypothesis->evidence < config.min_total_evidence) {

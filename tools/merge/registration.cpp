@@ -87,6 +87,41 @@ bool Descend(const PreparedSubmap& a, const PreparedSubmap& b, double gate_m, st
   return false;
 }
 
+// Agreement by blocks of the ground, in a's frame. Partners by chance are spread thin over all of it; where two places
+// only resemble each other in part, whole blocks disagree.
+class Blocks {
+ public:
+  void Count(const Eigen::Vector3f& p_a, bool found) {
+    const int x = static_cast<int>((p_a.x() + PreparedSubmap::kHalfSize_m) / kBlock_m);
+    const int y = static_cast<int>((p_a.y() + PreparedSubmap::kHalfSize_m) / kBlock_m);
+    if (x < 0 || y < 0 || x >= kSide || y >= kSide) return;
+    Block& block = blocks_[static_cast<std::size_t>(x * kSide + y)];
+    ++block.covered;
+    block.found += found ? 1 : 0;
+  }
+  [[nodiscard]] double TornShare() const {
+    int judged = 0;
+    int torn = 0;
+    for (const Block& block : blocks_) {
+      if (block.covered < kMinCovered) continue;
+      ++judged;
+      torn += block.found < kTorn * block.covered ? 1 : 0;
+    }
+    return judged > 0 ? static_cast<double>(torn) / judged : 1;
+  }
+
+ private:
+  static constexpr float kBlock_m = 8;
+  static constexpr int kSide = static_cast<int>(2 * PreparedSubmap::kHalfSize_m / kBlock_m);
+  static constexpr int kMinCovered = 10;
+  static constexpr double kTorn = 0.35;  // less is found by chance in most blocks of unrelated places
+  struct Block {
+    int covered = 0;
+    int found = 0;
+  };
+  std::array<Block, static_cast<std::size_t>(kSide) * kSide> blocks_{};
+};
+
 struct Partners {
   int covered = 0;
   int found = 0;
@@ -95,15 +130,18 @@ struct Partners {
 };
 
 Partners CountPartners(const PreparedSubmap& target, const PreparedSubmap& source, const Pose3& target_T_source,
-                       double distance_m, std::size_t stride) {
+                       double distance_m, std::size_t stride, Blocks* blocks = nullptr, bool target_is_a = true) {
   Partners out;
   const Eigen::Matrix3f rotation = target_T_source.q.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = target_T_source.t.cast<float>();
   for (std::size_t i = 0; i < source.structure_samples().size(); i += stride) {
-    const Eigen::Vector3f p = rotation * source.points()[source.structure_samples()[i]] + translation;
+    const Eigen::Vector3f& p_source = source.points()[source.structure_samples()[i]];
+    const Eigen::Vector3f p = rotation * p_source + translation;
     if (!target.Covers(p)) continue;
     ++out.covered;
-    if (!target.HasPoint(p, static_cast<float>(distance_m))) continue;
+    const bool found = target.HasPoint(p, static_cast<float>(distance_m));
+    if (blocks != nullptr) blocks->Count(target_is_a ? p : p_source, found);
+    if (!found) continue;
     ++out.found;
     const int at = target.NearestSurfel(p, 1.5F);
     if (at < 0) continue;
@@ -116,8 +154,10 @@ Partners CountPartners(const PreparedSubmap& target, const PreparedSubmap& sourc
 }
 
 void Judge(const PreparedSubmap& a, const PreparedSubmap& b, const RegistrationConfig& config, Registration* out) {
-  const Partners of_b = CountPartners(a, b, out->a_T_b, config.partner_distance_m, 1);
-  const Partners of_a = CountPartners(b, a, out->a_T_b.Inverse(), config.partner_distance_m, 1);
+  Blocks blocks;
+  const Partners of_b = CountPartners(a, b, out->a_T_b, config.partner_distance_m, 1, &blocks, true);
+  const Partners of_a = CountPartners(b, a, out->a_T_b.Inverse(), config.partner_distance_m, 1, &blocks, false);
+  out->torn_share = blocks.TornShare();
   out->overlap_of_b = of_b.Share();
   out->overlap_of_a = of_a.Share();
   out->covered = of_a.covered + of_b.covered;

@@ -32,14 +32,16 @@ struct Registration {
   double chance = 0;  // the greatest overlap_of_b when b is displaced: along a bare street as great as here
   int covered = 0;    // structure samples of a and b, together, that could have found a partner
   double covered_share = 0;
+  double torn_share = 1;  // of the 8 m blocks of ground that both have seen: where next to nothing finds a partner
   double residual_m = 0;                          // rms distance of partners across the shapes
   geom::Mat6d information = geom::Mat6d::Zero();  // right perturbation of a_T_b; of the shapes, not of the noise
   // Least and greatest eigenvalue of the horizontal part, per partner: small least = free to slide along a street.
   double slide_ratio = 0;
 
   [[nodiscard]] double Overlap() const { return std::min(overlap_of_a, overlap_of_b); }
-  // Overlap above what chance gives, 0..1.
-  [[nodiscard]] double Evidence() const { return chance < 1 ? std::max(0.0, (Overlap() - chance) / (1 - chance)) : 0; }
+  // Overlap above what chance gives, 0..1. A plain difference: on a bare street both are near 1, and that must count
+  // for nothing.
+  [[nodiscard]] double Evidence() const { return std::max(0.0, Overlap() - chance); }
 };
 
 // Cost: about 5 ms for submaps of 10 k points. Never fails: an answer that is no good shows in its numbers.

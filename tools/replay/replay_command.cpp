@@ -38,12 +38,8 @@ int RunReplay(const ReplayOptions& options) {
   }
 }
 
-}  // namespace mapweld::replay
-
-namespace mapweld {
-
 void AddReplayCommand(CLI::App& app) {
-  auto options = std::make_shared<replay::ReplayOptions>();
+  auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "Play a recorded drive to an agent over UDP, CAN and LCM");
   command->add_option("dir", options->dir, "Folder with lidar.pcap and imu.candump")->required();
   command->add_option("--agent", options->network.agent_id, "The agent's id")->required()->check(CLI::Range(1, 32767));
@@ -53,8 +49,8 @@ void AddReplayCommand(CLI::App& app) {
   command->add_flag("--realtime", options->realtime, "Keep the recorded pace instead of the agent's");
   command->add_option("--lcm-url", options->network.lcm_url, "LCM network (default: LCM_DEFAULT_URL, else LCM's own)");
   command->callback([options] {
-    if (const int code = replay::RunReplay(*options); code != 0) throw CLI::RuntimeError(code);
+    if (const int code = RunReplay(*options); code != 0) throw CLI::RuntimeError(code);
   });
 }
 
-}  // namespace mapweld
+}  // namespace mapweld::replay

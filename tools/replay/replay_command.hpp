@@ -18,11 +18,7 @@ struct ReplayOptions {
 // Progress goes to stderr, one summary line to stdout. Returns the exit code.
 int RunReplay(const ReplayOptions& options);
 
-}  // namespace mapweld::replay
-
-namespace mapweld {
-
 // The callback throws CLI::RuntimeError with the exit code when the command fails; the message is already out then.
 void AddReplayCommand(CLI::App& app);
 
-}  // namespace mapweld
+}  // namespace mapweld::replay

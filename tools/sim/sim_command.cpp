@@ -59,12 +59,8 @@ int RunSim(const SimOptions& options) {
   }
 }
 
-}  // namespace mapweld::sim
-
-namespace mapweld {
-
 void AddSimCommand(CLI::App& app) {
-  auto options = std::make_shared<sim::SimOptions>();
+  auto options = std::make_shared<SimOptions>();
   CLI::App* command =
       app.add_subcommand("sim", "Drive simulated vehicles through a real town and record their sensors");
   command->add_option("scenario", options->scenario, "Scenario file (default: the demo's four drives)");
@@ -74,9 +70,9 @@ void AddSimCommand(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "End every drive after this many seconds");
   command->add_option("--threads", options->threads, "Threads (default: one per processor); no effect on the bytes");
   command->callback([options] {
-    if (options->scenario.empty()) options->scenario = sim::DemoScenario();
-    if (const int code = sim::RunSim(*options); code != 0) throw CLI::RuntimeError(code);
+    if (options->scenario.empty()) options->scenario = DemoScenario();
+    if (const int code = RunSim(*options); code != 0) throw CLI::RuntimeError(code);
   });
 }
 
-}  // namespace mapweld
+}  // namespace mapweld::sim

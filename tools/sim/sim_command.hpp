@@ -11,11 +11,7 @@ namespace mapweld::sim {
 // Progress goes to stderr, one line per vehicle and ten percent; the summary to stdout. Returns the exit code.
 int RunSim(const SimOptions& options);
 
-}  // namespace mapweld::sim
-
-namespace mapweld {
-
 // The callback throws CLI::RuntimeError with the exit code when the command fails; the message is already out then.
 void AddSimCommand(CLI::App& app);
 
-}  // namespace mapweld
+}  // namespace mapweld::sim
