@@ -48,7 +48,7 @@ struct VerifyConfig {
   int min_loops = 3;
   double persist_m = 50;            // how far the walk along an overlap goes on without a loop: a look-alike is small
   double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
-  double max_torn_share = 0.2;      // mean over the near keyframe pairs; see Registration::torn_share
+  double max_torn_share = 0.3;      // mean over the near keyframe pairs; see Registration::torn_share
 };
 
 struct WeightConfig {

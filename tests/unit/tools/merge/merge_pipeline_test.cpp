@@ -87,7 +87,7 @@ MergeResult MergeAll(const MergeConfig& config = {}, MergeCache* cache = nullptr
 }
 
 const MergeResult& Merged() {
-  static const MergeResult& result = Merged();
+  static const MergeResult result = MergeAll();
   return result;
 }
 
