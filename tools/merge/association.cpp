@@ -10,9 +10,13 @@ std::vector<Match> Associate(const Distances& distances, const AssociationConfig
   const Likeness likeness = ComputeLikeness(distances);
   std::vector<Match> matches = MatchSequences(likeness, config);
   const auto add = [&](const Match& match) {
-    const bool known = std::any_of(matches.begin(), matches.end(),
-                                   [&](const Match& other) { return other.a == match.a && other.b == match.b; });
-    if (!known) matches.push_back(match);
+    const auto known = std::find_if(matches.begin(), matches.end(),
+                                    [&](const Match& other) { return other.a == match.a && other.b == match.b; });
+    if (known == matches.end()) {
+      matches.push_back(match);
+    } else {
+      known->ends = known->ends || match.ends;
+    }
   };
   for (const Match& match : MatchSingles(likeness, config)) add(match);
   for (const int a : {distances.rows - 1, 0}) {

@@ -215,7 +215,7 @@ Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const
   for (const Zone& zone : zones) {
     int tried = 0;
     for (const PlacedMatch& m : zone.matches) {
-      if (tried == config.seeds_per_zone) break;
+      if (tried >= config.seeds_per_zone && !m.match.ends) continue;
       const bool known = std::any_of(accepted.begin(), accepted.end(),
                                      [&](const Hypothesis& h) { return Knows(h, *finder, m.match, config.step_m); });
       if (known) break;

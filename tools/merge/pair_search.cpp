@@ -90,7 +90,7 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedC
   out.difference = ToImage(distances, a, b);
   const std::vector<Match> matches = Associate(distances, config.association);
   for (const Match& match : matches) {
-    if (!match.ends) out.overlap.matches.emplace_back(match.a, match.b);
+    if (!match.ends || match.score > 0) out.overlap.matches.emplace_back(match.a, match.b);
   }
   out.proposed = !out.overlap.matches.empty();
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
