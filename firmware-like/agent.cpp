@@ -68,8 +68,10 @@ bool Agent::Boot(std::span<char> message) {
       return fail("cannot read the CAN log %s: %s", options_.candump_path, std::strerror(errno));
     }
     if (errno == EAFNOSUPPORT) {
-      return fail("cannot open the CAN interface %s: this kernel has no CAN; load its modules (can, can-raw) or read a "
-                  "log with --candump", options_.can_interface);
+      return fail(
+          "cannot open the CAN interface %s: this kernel has no CAN; load its modules (can, can-raw) or read a "
+          "log with --candump",
+          options_.can_interface);
     }
     return fail("cannot open the CAN interface %s: %s; bring it up with 'ip link set %s up type can bitrate 500000'",
                 options_.can_interface, std::strerror(errno), options_.can_interface);

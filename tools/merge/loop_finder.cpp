@@ -58,7 +58,12 @@ Pose3 LoopFinder::Predict(const VerifiedLoop& from, int to_a, int to_b) const {
 LoopTry LoopFinder::Judge(int a, int b, const Registration& registration, double least_evidence) const {
   const VerifyConfig& verify = config_->verify;
   LoopTry out;
-  out.loop = {a, b, registration.a_T_b, registration.Evidence(), registration.Overlap(), registration.residual_m,
+  out.loop = {a,
+              b,
+              registration.a_T_b,
+              registration.Evidence(),
+              registration.Overlap(),
+              registration.residual_m,
               registration.torn_share};
   if (!registration.converged) {
     out.test = "registration";

@@ -156,18 +156,12 @@ class Walk {
 
 // Which of two refusals came further.
 int Rank(const std::string& test) {
-  constexpr const char* kOrder[] = {"no likeness",
-                                    "registration",
-                                    "little in common",
-                                    "tilt",
-                                    "overlap ratio",
-                                    "slides along the street",
-                                    "odometry",
-                                    "contradiction",
-                                    "look-alike",
-                                    "too little evidence",
-                                    "too few matches",
-                                    "submaps missing"};
+  constexpr const char* kOrder[] = {"no likeness",      "registration",
+                                    "little in common", "tilt",
+                                    "overlap ratio",    "slides along the street",
+                                    "odometry",         "contradiction",
+                                    "look-alike",       "too little evidence",
+                                    "too few matches",  "submaps missing"};
   const auto* at = std::find(std::begin(kOrder), std::end(kOrder), test);
   return static_cast<int>(at - std::begin(kOrder));
 }

@@ -33,7 +33,7 @@ struct Registration {
   int covered = 0;    // structure samples of a and b, together, that could have found a partner
   double covered_share = 0;
   double torn_share = 1;  // of the 8 m blocks of ground that both have seen: where next to nothing finds a partner
-  double residual_m = 0;                          // rms distance of partners across the shapes
+  double residual_m = 0;  // rms distance of partners across the shapes
   geom::Mat6d information = geom::Mat6d::Zero();  // right perturbation of a_T_b; of the shapes, not of the noise
   // Least and greatest eigenvalue of the horizontal part, per partner: small least = free to slide along a street.
   double slide_ratio = 0;
