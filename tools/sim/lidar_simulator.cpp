@@ -31,6 +31,11 @@ Elevation MakeElevation() {
   return e;
 }
 
+// Time since the sensor last looked forward.
+std::int64_t AngleTime_ns(std::int64_t past_hour_ns) {
+  return past_hour_ns % kRevolution_ns;
+}
+
 // World pose of the lidar over one packet: linear between its ends. Over 1.3 ms a vehicle's true motion differs from
 // that by less than a micrometre at the sensor and a tenth of a millimetre at 100 m.
 struct MovingPose {
@@ -64,22 +69,17 @@ Vlp16Return DetectReturn(const LidarModel& model, Surface surface, std::uint32_t
   return {static_cast<std::uint16_t>(units), static_cast<std::uint8_t>(reflectivity)};
 }
 
-Vlp16Packet LidarSimulator::Packet(std::int64_t index) const {
+template <class Visit>
+void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
   static const Elevation elevation = MakeElevation();
   const std::int64_t begin_ns = index * Vlp16::kPacketPeriod_ns;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const MovingPose pose =
       PoseOver(motion_, model_.body_T_lidar, seconds(begin_ns), seconds(begin_ns + Vlp16::kPacketPeriod_ns));
-  Vlp16Packet packet;
-  packet.us_past_hour = static_cast<std::uint32_t>((start_past_hour_ns_ + begin_ns) / 1000 % 3'600'000'000);
   RayPacket rays;
   for (std::size_t sequence = 0; sequence < Vlp16::kSequences; ++sequence) {
     const std::int64_t sequence_ns = static_cast<std::int64_t>(sequence) * Vlp16::kSequencePeriod_ns;
-    const std::int64_t angle_ns = (start_past_hour_ns_ + begin_ns + sequence_ns) % kRevolution_ns;
-    if (sequence % Vlp16::kSequencesPerBlock == 0) {
-      packet.azimuth_cdeg[sequence / Vlp16::kSequencesPerBlock] =
-          static_cast<std::uint16_t>((angle_ns * 36000 + kRevolution_ns / 2) / kRevolution_ns % 36000);
-    }
+    const std::int64_t angle_ns = AngleTime_ns(start_past_hour_ns_ + begin_ns + sequence_ns);
     for (std::size_t laser = 0; laser < Vlp16::kLasers; ++laser) {
       const std::int64_t laser_ns = static_cast<std::int64_t>(laser) * Vlp16::kLaserPeriod_ns;
       const auto azimuth = static_cast<float>(2 * std::numbers::pi * static_cast<double>(angle_ns + laser_ns) /
@@ -101,12 +101,37 @@ Vlp16Packet LidarSimulator::Packet(std::int64_t index) const {
     for (std::size_t laser = 0; laser < Vlp16::kLasers; ++laser) {
       if (rays.distance_m[laser] <= 0) continue;
       const auto ray_number = static_cast<std::uint64_t>(index) * 1024 + sequence * Vlp16::kLasers + laser;
-      packet.returns[sequence][laser] =
+      const Vlp16Return measured =
           DetectReturn(model_, rays.surface[laser], rays.patch[laser], static_cast<double>(rays.distance_m[laser]),
                        static_cast<double>(rays.cos_incidence[laser]), Hash(seed_, ray_number));
+      if (measured.distance_2mm == 0) continue;
+      visit(sequence, laser, measured, Vector3f(rays.origin_x[laser], rays.origin_y[laser], rays.origin_z[laser]),
+            Vector3f(rays.direction_x[laser], rays.direction_y[laser], rays.direction_z[laser]));
     }
   }
+}
+
+Vlp16Packet LidarSimulator::Packet(std::int64_t index) const {
+  const std::int64_t begin_ns = start_past_hour_ns_ + index * Vlp16::kPacketPeriod_ns;
+  Vlp16Packet packet;
+  packet.us_past_hour = static_cast<std::uint32_t>(begin_ns / 1000 % 3'600'000'000);
+  for (std::size_t block = 0; block < Vlp16::kBlocks; ++block) {
+    const auto sequence = static_cast<std::int64_t>(block * Vlp16::kSequencesPerBlock);
+    const std::int64_t angle_ns = AngleTime_ns(begin_ns + sequence * Vlp16::kSequencePeriod_ns);
+    packet.azimuth_cdeg[block] =
+        static_cast<std::uint16_t>((angle_ns * 36000 + kRevolution_ns / 2) / kRevolution_ns % 36000);
+  }
+  Fire(index, [&](std::size_t sequence, std::size_t laser, const Vlp16Return& measured, const Vector3f&,
+                  const Vector3f&) { packet.returns[sequence][laser] = measured; });
   return packet;
+}
+
+void LidarSimulator::AppendPoints(std::int64_t index, std::vector<Vector3f>* world_points) const {
+  Fire(index, [&](std::size_t, std::size_t, const Vlp16Return& measured, const Vector3f& origin,
+                  const Vector3f& direction) {
+    const auto distance_m = static_cast<float>(measured.distance_2mm * Vlp16::kDistanceUnit_m);
+    world_points->push_back(origin + distance_m * direction);
+  });
 }
 
 }  // namespace mapweld::sim

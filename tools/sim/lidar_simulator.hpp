@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/geom/pose3.hpp"
 #include "tools/sim/ray_caster.hpp"
@@ -27,8 +28,14 @@ class LidarSimulator {
 
   // Packet `index` begins index * Vlp16::kPacketPeriod_ns after the start. Depends on nothing but the index.
   [[nodiscard]] Vlp16Packet Packet(std::int64_t index) const;
+  // The returns of the same packet as points in the world: what a perfect odometry would make of it.
+  void AppendPoints(std::int64_t index, std::vector<Eigen::Vector3f>* world_points) const;
 
  private:
+  // Fires all beams of one packet: visit(sequence, laser, return, origin, direction) for those that came back.
+  template <class Visit>
+  void Fire(std::int64_t index, const Visit& visit) const;
+
   const RayCaster& caster_;
   const VehicleMotion& motion_;
   LidarModel model_;

@@ -51,7 +51,7 @@ std::uint32_t RoadGraph::NearestNode(const Vec2d& p) const {
   return static_cast<std::uint32_t>(nearest - positions_.begin());
 }
 
-std::vector<std::uint32_t> RoadGraph::ShortestPath(std::uint32_t from, std::uint32_t to) const {
+std::vector<std::uint32_t> RoadGraph::ShortestPath(std::uint32_t from, std::uint32_t to, const Permit& permit) const {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<double> distance(size(), std::numeric_limits<double>::infinity());
   std::vector<std::uint32_t> parent(size(), kNone);
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> RoadGraph::ShortestPath(std::uint32_t from, std::uint
     open.pop();
     if (d > distance[node]) continue;
     for (const Edge& e : edges_[node]) {
-      if (d + e.length_m >= distance[e.to]) continue;
+      if (d + e.length_m >= distance[e.to] || !permit(node, e.to)) continue;
       distance[e.to] = d + e.length_m;
       parent[e.to] = node;
       open.emplace(distance[e.to], e.to);

@@ -2,8 +2,11 @@
 #include "tools/sim/roadside.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "tools/sim/hash_noise.hpp"
 
@@ -37,26 +40,55 @@ void AddCar(const Vec2d& centre, const Vec2d& along, std::uint64_t seed, TownMes
   car.AddFace(cabin, height);
 }
 
+// Things by the squares of the plane that they reach into.
+template <class Thing>
+class PlaneIndex {
+ public:
+  void Add(const Box2& reach, const Thing& thing) {
+    for (int x = Cell(reach.low.x()); x <= Cell(reach.high.x()); ++x) {
+      for (int y = Cell(reach.low.y()); y <= Cell(reach.high.y()); ++y) cells_[Key(x, y)].push_back(thing);
+    }
+  }
+  [[nodiscard]] std::span<const Thing> At(const Vec2d& p) const {
+    const auto found = cells_.find(Key(Cell(p.x()), Cell(p.y())));
+    return found == cells_.end() ? std::span<const Thing>{} : std::span<const Thing>{found->second};
+  }
+
+ private:
+  static int Cell(double x) { return static_cast<int>(std::floor(x / 40)); }
+  static std::int64_t Key(int x, int y) { return static_cast<std::int64_t>(x) * 1'000'003 + y; }
+  std::unordered_map<std::int64_t, std::vector<Thing>> cells_;
+};
+
 // Keeps pieces off every carriageway, out of every house and away from junctions.
 class Clearance {
  public:
   Clearance(const Town& town, const Box2& area) {
     std::unordered_map<std::int64_t, int> ends;
+    const auto around = [](std::initializer_list<Vec2d> points, double margin) {
+      Box2 box;
+      for (const Vec2d& p : points) box.Extend(p);
+      return box.Grown(margin);
+    };
     for (const Road& road : town.roads) {
       for (std::size_t i = 0; i < road.nodes.size(); ++i) {
         int& n = ends[road.nodes[i]];
         const int before = n;
         n += (i > 0 ? 1 : 0) + (i + 1 < road.nodes.size() ? 1 : 0);
-        if (before < 3 && n >= 3 && area.Contains(road.line[i])) junctions_.push_back(road.line[i]);
+        if (before < 3 && n >= 3 && area.Contains(road.line[i])) junctions_.Add(around({road.line[i]}, kReach_m), road.line[i]);
         if (i == 0) continue;
         const double reach = (road.line[i] - road.line[i - 1]).norm();
         if (area.Grown(reach).Contains(road.line[i])) {
-          pieces_.push_back({road.line[i - 1], road.line[i], road.half_width_m});
+          pieces_.Add(around({road.line[i - 1], road.line[i]}, kReach_m),
+                      {road.line[i - 1], road.line[i], road.half_width_m});
         }
       }
     }
     for (const Building& building : town.buildings) {
-      if (area.Contains(building.footprint.front())) buildings_.push_back(&building);
+      if (!area.Contains(building.footprint.front())) continue;
+      Box2 box;
+      for (const Vec2d& p : building.footprint) box.Extend(p);
+      buildings_.Add(box.Grown(kReach_m), &building);
     }
   }
   // True when a disc of this radius stands free.
@@ -64,18 +96,13 @@ class Clearance {
     constexpr double kKerb_m = 0.3;
     constexpr double kToWall_m = 0.4;
     constexpr double kJunction_m = 9;
-    constexpr double kFar_m =
-        60;  // no footprint reaches farther from its first corner in practice; larger ones are tested
-    for (const Piece& piece : pieces_) {
+    for (const Piece& piece : pieces_.At(p)) {
       if (DistanceToSegment(p, piece.from, piece.to) < piece.half_width_m + kKerb_m + radius) return false;
     }
-    for (const Vec2d& junction : junctions_) {
+    for (const Vec2d& junction : junctions_.At(p)) {
       if ((p - junction).norm() < kJunction_m + radius) return false;
     }
-    for (const Building* building : buildings_) {
-      if ((building->footprint.front() - p).norm() > kFar_m + std::sqrt(std::abs(SignedArea(building->footprint)))) {
-        continue;
-      }
+    for (const Building* building : buildings_.At(p)) {
       if (DistanceToPolygon(building->footprint, p) < kToWall_m + radius) return false;
     }
     return true;
@@ -87,9 +114,10 @@ class Clearance {
     Vec2d to;
     double half_width_m;
   };
-  std::vector<Piece> pieces_;
-  std::vector<Vec2d> junctions_;
-  std::vector<const Building*> buildings_;
+  static constexpr double kReach_m = 16;  // no clearance asked for is wider, half a carriageway included
+  PlaneIndex<Piece> pieces_;
+  PlaneIndex<Vec2d> junctions_;
+  PlaneIndex<const Building*> buildings_;
 };
 
 // One plot of the roadside: its middle, the direction of the street, the direction away from the street.

@@ -63,6 +63,39 @@ VehiclePlan ReadVehicle(const json& object, const std::string& where) {
   return plan;
 }
 
+SurveyPlan ReadSurvey(const json& object, const std::string& where) {
+  const Fields fields(object, where,
+                      {"drives", "zones", "zone_radius_m", "min_length_m", "max_length_m", "total_length_m"});
+  SurveyPlan plan;
+  plan.drives = fields.Get<int>("drives");
+  plan.zones = fields.Get<int>("zones");
+  plan.zone_radius_m = fields.Get<double>("zone_radius_m");
+  plan.min_length_m = fields.Get<double>("min_length_m");
+  plan.max_length_m = fields.Get<double>("max_length_m");
+  plan.total_length_m = fields.Get<double>("total_length_m");
+  if (plan.drives < 1 || plan.drives > 32767 || plan.zones < 1 || plan.zones > plan.drives) {
+    throw std::runtime_error(fmt::format("{}: needs 1 to 32767 drives and at most as many zones", where));
+  }
+  if (!(plan.zone_radius_m > 0) || !(plan.min_length_m >= 100) || !(plan.max_length_m >= plan.min_length_m) ||
+      !(plan.total_length_m >= plan.min_length_m * plan.drives) ||
+      !(plan.total_length_m <= plan.max_length_m * plan.drives)) {
+    throw std::runtime_error(
+        fmt::format("{}: needs a radius, drives of at least 100 m, and a total that they can reach", where));
+  }
+  return plan;
+}
+
+// Installed: <prefix>/bin/mapweld and <prefix>/share/mapweld/sim. In the build tree: the source folder.
+std::filesystem::path ScenarioFolder() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const auto installed = program.parent_path().parent_path() / "share/mapweld/sim";
+    if (std::filesystem::exists(installed, error)) return installed;
+  }
+  return MAPWELD_SIM_DATA_DIR;
+}
+
 }  // namespace
 
 Scenario ReadScenario(const std::filesystem::path& file) {
@@ -75,12 +108,19 @@ Scenario ReadScenario(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("scenario {} is no valid JSON: {}", file.string(), e.what()));
   }
   const std::string where = "scenario " + file.string();
-  const Fields fields(document, where, {"name", "about", "town", "origin", "seed", "vehicles"});
+  const Fields fields(document, where, {"name", "about", "town", "origin", "seed", "vehicles", "survey"});
   Scenario scenario;
   scenario.name = fields.Get<std::string>("name");
   scenario.town = file.parent_path() / fields.Get<std::string>("town");
   scenario.origin = fields.Point(fields.Get<std::array<double, 2>>("origin"));
   if (fields.Has("seed")) scenario.seed = fields.Get<std::uint64_t>("seed");
+  if (fields.Has("survey") == fields.Has("vehicles")) {
+    throw std::runtime_error(fmt::format("{}: needs either 'vehicles' or 'survey'", where));
+  }
+  if (fields.Has("survey")) {
+    scenario.survey = ReadSurvey(fields.Get<json>("survey"), where + ", survey");
+    return scenario;
+  }
   const auto vehicles = fields.Get<std::vector<json>>("vehicles");
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     scenario.vehicles.push_back(ReadVehicle(vehicles[i], fmt::format("{}, vehicle number {}", where, i + 1)));
@@ -96,16 +136,17 @@ Scenario ReadScenario(const std::filesystem::path& file) {
   return scenario;
 }
 
-std::filesystem::path DemoScenario() {
-  constexpr const char* kName = "four_drives.json";
-  // Installed: <prefix>/bin/mapweld and <prefix>/share/mapweld/sim. In the build tree: the source folder.
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    const auto installed = program.parent_path().parent_path() / "share/mapweld/sim" / kName;
-    if (std::filesystem::exists(installed, error)) return installed;
+std::filesystem::path ScenarioByName(const std::string& name) {
+  const std::filesystem::path folder = ScenarioFolder();
+  std::filesystem::path file = folder / (name + ".json");
+  if (std::filesystem::exists(file)) return file;
+  std::vector<std::string> known;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") known.push_back(entry.path().stem().string());
   }
-  return std::filesystem::path(MAPWELD_SIM_DATA_DIR) / kName;
+  std::sort(known.begin(), known.end());
+  throw std::runtime_error(fmt::format("there is no scenario '{}'; give one of {} or a .json file", name,
+                                       fmt::join(known, ", ")));
 }
 
 }  // namespace mapweld::sim

@@ -6,31 +6,33 @@
 namespace mapweld::sim {
 namespace {
 
-std::vector<StreetPath> PlanRoutes(const Scenario& scenario, const Town& town, const LocalFrame& frame) {
+std::vector<SurveyedDrive> PlanRoutes(const Scenario& scenario, const Town& town, const LocalFrame& frame,
+                                      std::uint64_t seed) {
   const RoadGraph graph(town.roads);
-  std::vector<StreetPath> routes;
+  if (scenario.survey) return PlanSurvey(graph, *scenario.survey, seed);
+  std::vector<SurveyedDrive> routes;
   for (const VehiclePlan& plan : scenario.vehicles) {
     routes.push_back(
-        PlanStreetPath(graph, town.bounds, frame, plan.waypoints, fmt::format("route of vehicle {}", plan.id)));
+        {0, PlanStreetPath(graph, town.bounds, frame, plan.waypoints, fmt::format("route of vehicle {}", plan.id))});
   }
   return routes;
 }
 
-Box2 AreaAround(const std::vector<StreetPath>& routes) {
+Box2 AreaAround(const std::vector<SurveyedDrive>& routes) {
   constexpr double kSight_m = 160;  // beyond the range of the sensor, so that no house at its edge is cut
   Box2 area;
-  for (const StreetPath& route : routes) {
-    for (const Vec2d& p : route.centreline) area.Extend(p);
+  for (const SurveyedDrive& route : routes) {
+    for (const Vec2d& p : route.path.centreline) area.Extend(p);
   }
   return area.Grown(kSight_m);
 }
 
 }  // namespace
 
-SimWorld::SimWorld(const Scenario& scenario)
+SimWorld::SimWorld(const Scenario& scenario, std::uint64_t seed)
     : frame_(scenario.origin),
       town_(ReadOsmTown(scenario.town, frame_)),
-      routes_(PlanRoutes(scenario, town_, frame_)),
+      routes_(PlanRoutes(scenario, town_, frame_, seed)),
       mesh_(BuildTownMesh(town_, AreaAround(routes_))),
       caster_(mesh_) {}
 

@@ -14,14 +14,16 @@ namespace mapweld::sim {
 class SimWorld {
  public:
   // Plans the routes of all vehicles and builds the town around all of them, whichever will be simulated later, so that
-  // a vehicle sees the same town alone and in company. Throws std::runtime_error, see ReadOsmTown and PlanStreetPath.
-  explicit SimWorld(const Scenario& scenario);
+  // a vehicle sees the same town alone and in company. `seed` chooses the routes of a survey. Throws
+  // std::runtime_error, see ReadOsmTown, PlanStreetPath and PlanSurvey.
+  SimWorld(const Scenario& scenario, std::uint64_t seed);
 
   [[nodiscard]] const LocalFrame& frame() const { return frame_; }
   [[nodiscard]] const Town& town() const { return town_; }
-  [[nodiscard]] const StreetPath& route(std::size_t vehicle) const {
-    return routes_[vehicle];
-  }  // order of the scenario
+  // In the order of the scenario.
+  [[nodiscard]] const StreetPath& route(std::size_t vehicle) const { return routes_[vehicle].path; }
+  // Vehicles of different zones share no street.
+  [[nodiscard]] int zone(std::size_t vehicle) const { return routes_[vehicle].zone; }
   [[nodiscard]] std::size_t vehicles() const { return routes_.size(); }
   [[nodiscard]] const TownMesh& mesh() const { return mesh_; }
   [[nodiscard]] const RayCaster& caster() const { return caster_; }
@@ -29,7 +31,7 @@ class SimWorld {
  private:
   LocalFrame frame_;
   Town town_;
-  std::vector<StreetPath> routes_;
+  std::vector<SurveyedDrive> routes_;
   TownMesh mesh_;
   RayCaster caster_;
 };

@@ -9,13 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "tools/sim/agent_log.hpp"
 #include "tools/sim/recording_writer.hpp"
 
 namespace mapweld::sim {
 
+// What is written of every drive.
+enum class Depth {
+  kWire,     // every packet and CAN frame: vehicle_<n>/, see recording_writer.hpp
+  kSubmaps,  // what the agent would have published: agent_<n>.lcm and truth/agent_<n>.tum, see agent_log.hpp
+};
+
 struct SimOptions {
   std::filesystem::path scenario;
   std::filesystem::path out;
+  Depth depth = Depth::kWire;
   std::vector<int> vehicles;          // empty: all
   std::optional<std::uint64_t> seed;  // else the scenario's
   std::optional<double> seconds;      // no drive longer than this
@@ -26,17 +34,21 @@ struct VehicleSummary {
   int id = 0;
   double length_m = 0;    // of the part that was driven
   double duration_s = 0;  // of sensor time
-  DriveCounts counts;
+  DriveCounts counts;     // depth kWire
+  AgentLogCounts log;     // depth kSubmaps
 };
 
 struct SimSummary {
   std::vector<VehicleSummary> vehicles;
+  int overlaps = 0;      // pairs of vehicles that share a stretch of street, see kMinOverlap_m
   double prepare_s = 0;  // town, routes, scene
   double drive_s = 0;    // all recordings, wall clock
 };
 
-// Vehicle n starts 600 + n seconds past the hour. Writes `out`/vehicle_<n>/ and `out`/scenario.json beside `out` first
-// and moves them into place at the end; an earlier recording at `out` is replaced, anything else there is refused.
+inline constexpr double kMinOverlap_m = 30;  // driven together, to be listed as an overlap; less is a crossing
+
+// Vehicle n starts 600 + n seconds past the hour. Writes the drives and `out`/scenario.json, which lists the true
+// overlaps, beside `out` first and moves them into place at the end; an earlier recording at `out` is replaced, anything else there is refused.
 // `progress(vehicle, share)` is called by several threads. Throws std::runtime_error.
 SimSummary Simulate(const SimOptions& options, const std::function<void(int, double)>& progress);
 

@@ -51,7 +51,7 @@ TEST_F(ScenarioFile, NamesWhatIsWrong) {
 }
 
 TEST(DemoScenario, ComesWithTheProgram) {
-  const Scenario scenario = ReadScenario(DemoScenario());
+  const Scenario scenario = ReadScenario(ScenarioByName("four_drives"));
   EXPECT_EQ(scenario.vehicles.size(), 4U);
   EXPECT_TRUE(std::filesystem::exists(scenario.town));
 }

@@ -19,7 +19,7 @@ class Simulation : public testing::Test {
  protected:
   SimOptions Options(const std::string& name, unsigned threads) {
     SimOptions options;
-    options.scenario = DemoScenario();
+    options.scenario = ScenarioByName("four_drives");
     options.out = folder_ / name;
     options.seconds = 1.5;
     options.threads = threads;
