@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "tools/eval/merge_score.hpp"
 #include "tools/io/trajectory_file.hpp"
 #include "tools/io/unique_names.hpp"
 
@@ -104,14 +105,16 @@ std::string ErrorJson(const GroupError& error) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-void AddEvalCommand(CLI::App& app) {
+namespace {
+
+void AddTrajectories(CLI::App& eval) {
   struct Options {
     std::vector<fs::path> truth;
     std::vector<fs::path> estimate;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("eval", "absolute trajectory error of one or several vehicles");
+  CLI::App* command = eval.add_subcommand("trajectories", "absolute trajectory error of one or several vehicles");
   command->add_option("--truth", options->truth, "true trajectory, TUM or KITTI rows; once per vehicle")->required();
   command->add_option("--estimate", options->estimate, "estimated trajectory; once per vehicle, same order")
       ->required();
@@ -120,6 +123,32 @@ void AddEvalCommand(CLI::App& app) {
     const GroupError error = EvaluateGroup(LoadVehicles(options->truth, options->estimate));
     fmt::print("{}", options->json ? ErrorJson(error) : ErrorTable(error));
   });
+}
+
+void AddMerge(CLI::App& eval) {
+  struct Options {
+    fs::path result;
+    fs::path truth;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = eval.add_subcommand("merge", "which overlaps and groups a merge of simulated drives got right");
+  command->add_option("result", options->result, "output folder of mapweld merge or serve")->required();
+  command->add_option("--truth", options->truth, "scenario.json of mapweld sim")->required();
+  command->add_flag("--json", options->json, "print JSON instead of a table");
+  command->callback([options] {
+    const MergeScore score = ScoreMerge(ReadMergeTruth(options->truth), ReadMergeOutcome(options->result));
+    fmt::print("{}", options->json ? ScoreJson(score) : ScoreTable(score));
+  });
+}
+
+}  // namespace
+
+void AddEvalCommand(CLI::App& app) {
+  CLI::App* eval = app.add_subcommand("eval", "Measure results against the truth");
+  eval->require_subcommand(1);
+  AddTrajectories(*eval);
+  AddMerge(*eval);
 }
 
 }  // namespace mapweld::eval

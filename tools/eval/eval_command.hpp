@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `mapweld eval`: how far estimated trajectories are from the truth.
+// `mapweld eval`: how far results are from the truth.
 #pragma once
 
 #include <CLI/CLI.hpp>

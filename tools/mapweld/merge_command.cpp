@@ -3,95 +3,77 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "tools/io/recording_folder.hpp"
-#include "tools/io/unique_names.hpp"
+#include "tools/mapweld/merge_inputs.hpp"
 #include "tools/mapweld/terminal_progress.hpp"
 #include "tools/merge/merge_pipeline.hpp"
-#include "tools/merge/recording.hpp"
 #include "tools/report/outcome.hpp"
 
 namespace mapweld::merge {
 namespace {
 
+constexpr int kMapStep = 2;  // every second submap makes the map: 10 m apart, with 50 m of radius
+
 struct MergeArguments {
-  std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> inputs;
   std::filesystem::path out;
   std::vector<std::string> truth;
+  std::filesystem::path truth_folder;
   int threads = 0;
 };
 
-// Opens every recording before any long work begins, so that a mistake is told at once. By name: the order on the
-// command line must not matter.
-std::vector<Recording> OpenRecordings(const std::vector<std::filesystem::path>& folders) {
-  const std::vector<std::string> names = io::UniqueNames(folders);
-  std::vector<Recording> recordings;
-  for (std::size_t i = 0; i < folders.size(); ++i) {
-    const auto folder = std::make_shared<io::RecordingFolder>(io::RecordingFolder::Open(folders[i]));
-    for (const std::string& note : folder->notes()) fmt::print(stderr, "merge: {}\n", note);
-    recordings.push_back({names[i], folder->times(), folder->world_T_lidar(),
-                          [folder](int scan) { return folder->LoadScan(static_cast<std::size_t>(scan)).points; }});
-  }
-  std::sort(recordings.begin(), recordings.end(),
-            [](const Recording& a, const Recording& b) { return a.name < b.name; });
-  return recordings;
+using Clock = std::chrono::steady_clock;
+double SecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-std::vector<io::StampedPose> ScanTrajectory(const Recording& recording, const RecordedDrive& recorded,
-                                            const std::vector<geom::Pose3>& merged_T_body) {
-  const std::vector<geom::Pose3> poses = MergedScanPoses(recorded, merged_T_body);
-  std::vector<io::StampedPose> trajectory;
-  for (std::size_t i = 0; i < poses.size(); ++i) trajectory.push_back({recording.times[i], poses[i]});
-  return trajectory;
+// NAME=FILE arguments, and NAME.tum or NAME.txt of the folder for every other drive.
+std::map<std::string, std::filesystem::path> TruthOf(const MergeArguments& arguments,
+                                                     const std::vector<merge::Drive>& drives) {
+  std::map<std::string, std::filesystem::path> truth;
+  for (const std::string& argument : arguments.truth) truth.insert(report::ParseTruth(argument));
+  if (arguments.truth_folder.empty()) return truth;
+  for (const merge::Drive& drive : drives) {
+    for (const char* extension : {".tum", ".txt"}) {
+      const std::filesystem::path file = arguments.truth_folder / (drive.name + extension);
+      if (std::filesystem::exists(file)) truth.emplace(drive.name, file);
+    }
+  }
+  if (truth.empty()) {
+    throw std::runtime_error(fmt::format("{} holds no truth: no NAME.tum or NAME.txt of any drive, for example {}.tum",
+                                         arguments.truth_folder.string(), drives.front().name));
+  }
+  return truth;
 }
 
 void RunMerge(const MergeArguments& arguments) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  };
-  std::map<std::string, std::filesystem::path> truth;
-  for (const std::string& argument : arguments.truth) truth.insert(report::ParseTruth(argument));
-  const std::vector<Recording> recordings = OpenRecordings(arguments.folders);
-
   TerminalProgress progress("merge");
   const auto begin = Clock::now();
-  RecordingConfig recording_config;
-  recording_config.threads = arguments.threads;
-  std::vector<RecordedDrive> recorded;
-  std::vector<Drive> drives;
-  for (const Recording& recording : recordings) {
-    progress.SetSubject(recording.name);
-    recorded.push_back(BuildDrive(recording, recording_config, &progress));
-    drives.push_back(recorded.back().drive);
-  }
+  MergeInputs inputs(arguments.inputs, arguments.threads, &progress);
+  const std::map<std::string, std::filesystem::path> truth = TruthOf(arguments, inputs.drives());
   progress.SetSubject("");
-  const double build_s = seconds_since(begin);
+  const double build_s = SecondsSince(begin);
 
   MergeConfig config;
   config.threads = arguments.threads;
-  RecordedSubmaps submaps(recorded);
-  const MergeResult result = MergeDrives(drives, submaps, config, &progress);
+  const MergeResult result = MergeDrives(inputs.drives(), inputs, config, &progress);
 
   report::OutcomeInput outcome;
-  outcome.title = fmt::format("Map of {} recordings", drives.size());
-  outcome.drives = &drives;
+  outcome.title = fmt::format("Map of {} recordings", inputs.drives().size());
+  outcome.drives = &inputs.drives();
   outcome.result = &result;
-  outcome.submaps = &submaps;
-  outcome.truth = std::move(truth);
+  ThinnedSubmaps map_submaps(&inputs, kMapStep);
+  outcome.submaps = &map_submaps;
+  outcome.truth = truth;
   outcome.seconds = {{"submaps", build_s}};
-  for (std::size_t d = 0; d < drives.size(); ++d) {
-    outcome.trajectories.push_back(ScanTrajectory(recordings[d], recorded[d], result.merged_T_body[d]));
-  }
+  outcome.trajectories = inputs.Trajectories(result.merged_T_body);
   progress.Finish();
   const report::Summary summary = report::WriteOutcome(arguments.out, std::move(outcome));
   fmt::print("{}report: {}\n", report::SummaryTable(summary), (arguments.out / "report.html").string());
@@ -100,14 +82,18 @@ void RunMerge(const MergeArguments& arguments) {
 }  // namespace
 
 void AddMergeCommand(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("merge", "Merge recordings of any LiDAR odometry: scans with poses");
+  CLI::App* const command =
+      app.add_subcommand("merge", "Merge recordings of any LiDAR odometry, or LCM logs of Mapweld's agents");
   const auto arguments = std::make_shared<MergeArguments>();
   command
-      ->add_option("recordings", arguments->folders, "folders: KITTI layout, or PCD/PLY clouds with a TUM trajectory")
+      ->add_option("recordings", arguments->inputs,
+                   "folders (KITTI layout, or PCD/PLY clouds with a TUM trajectory) and .lcm logs")
       ->required();
   command->add_option("-o,--out", arguments->out, "folder for map, trajectories and report.html")->required();
   command->add_option("--truth", arguments->truth,
                       "NAME=FILE: true trajectory of a recording, for the errors in the report");
+  command->add_option("--truth-folder", arguments->truth_folder,
+                      "folder with NAME.tum (or KITTI NAME.txt) for --truth");
   command->add_option("--threads", arguments->threads, "0: all of the machine; never changes the result")
       ->check(CLI::Range(0, 1024));
   command->callback([arguments] { RunMerge(*arguments); });

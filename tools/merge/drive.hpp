@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,11 +42,29 @@ struct SubmapKey {
 };
 
 // Where the merge gets submaps. Find returns null for one that has not arrived yet; the merge then goes on without it
-// and lists it as missing, so that the caller can fetch it and merge again.
+// and lists it as missing, so that the caller can fetch it and merge again. Never called by two threads at once.
 class SubmapSource {
  public:
   virtual ~SubmapSource() = default;
-  virtual const SubmapCloud* Find(SubmapKey key) = 0;
+  virtual std::shared_ptr<const SubmapCloud> Find(SubmapKey key) = 0;
+};
+
+// For sources that keep their clouds anyway, longer than anyone asks for them.
+inline std::shared_ptr<const SubmapCloud> Kept(const SubmapCloud* cloud) {
+  return {std::shared_ptr<const SubmapCloud>{}, cloud};
+}
+
+// Only every `step`-th submap of each drive: enough for a map when they lie closer than they reach.
+class ThinnedSubmaps final : public SubmapSource {
+ public:
+  ThinnedSubmaps(SubmapSource* all, int step) : all_(all), step_(step) {}
+  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override {
+    return key.keyframe % step_ == 0 ? all_->Find(key) : nullptr;
+  }
+
+ private:
+  SubmapSource* all_;
+  int step_;
 };
 
 }  // namespace mapweld::merge

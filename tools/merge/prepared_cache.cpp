@@ -7,7 +7,7 @@ namespace mapweld::merge {
 
 std::shared_ptr<const PreparedSubmap> PreparedCache::Get(SubmapKey key) {
   std::shared_ptr<Slot> slot;
-  const SubmapCloud* cloud = nullptr;
+  std::shared_ptr<const SubmapCloud> cloud;
   {
     const std::lock_guard lock(mutex_);
     cloud = source_->Find(key);

@@ -129,12 +129,12 @@ std::vector<Pose3> MergedScanPoses(const RecordedDrive& recorded, const std::vec
   return merged_T_scan;
 }
 
-const SubmapCloud* RecordedSubmaps::Find(SubmapKey key) {
+std::shared_ptr<const SubmapCloud> RecordedSubmaps::Find(SubmapKey key) {
   const auto drive = static_cast<std::size_t>(key.drive);
   const auto keyframe = static_cast<std::size_t>(key.keyframe);
   if (key.drive < 0 || drive >= drives_->size()) return nullptr;
   if (key.keyframe < 0 || keyframe >= (*drives_)[drive].submaps.size()) return nullptr;
-  return &(*drives_)[drive].submaps[keyframe];
+  return Kept(&(*drives_)[drive].submaps[keyframe]);
 }
 
 }  // namespace mapweld::merge

@@ -57,7 +57,7 @@ std::vector<geom::Pose3> MergedScanPoses(const RecordedDrive& recorded, const st
 class RecordedSubmaps : public SubmapSource {
  public:
   explicit RecordedSubmaps(const std::vector<RecordedDrive>& drives) : drives_(&drives) {}
-  const SubmapCloud* Find(SubmapKey key) override;
+  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override;
 
  private:
   const std::vector<RecordedDrive>* drives_;

@@ -69,7 +69,7 @@ std::vector<MapPoint> BuildGroupMap(const std::vector<merge::Drive>& drives, con
     const auto d = static_cast<std::size_t>(drive);
     const std::vector<merge::Keyframe>& keyframes = drives.at(d).keyframes;
     for (std::size_t k = 0; k < keyframes.size(); ++k) {
-      const merge::SubmapCloud* cloud = submaps->Find({drive, static_cast<int>(k)});
+      const std::shared_ptr<const merge::SubmapCloud> cloud = submaps->Find({drive, static_cast<int>(k)});
       if (cloud == nullptr) continue;
       const geom::Pose3 merged_T_level = MergedTLevel(result.merged_T_body.at(d).at(k), keyframes[k].odom_T_body);
       for (const Eigen::Vector3f& p_level : cloud->points) {

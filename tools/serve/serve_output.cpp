@@ -3,11 +3,11 @@
 
 namespace mapweld::serve {
 
-const merge::SubmapCloud* StoredSubmaps::Find(merge::SubmapKey key) {
-  if (key.keyframe % step_ != 0) return nullptr;
-  return link_->WithStore([&](const FleetStore& store) {
+std::shared_ptr<const merge::SubmapCloud> StoredSubmaps::Find(merge::SubmapKey key) {
+  const merge::SubmapCloud* cloud = link_->WithStore([&](const FleetStore& store) {
     return store.FindSubmap((*ids_)[static_cast<std::size_t>(key.drive)], key.keyframe);
   });
+  return cloud == nullptr ? nullptr : merge::Kept(cloud);
 }
 
 std::vector<report::DriveSummary> Traffic(FleetLink* link, const std::vector<DriveId>& ids) {

@@ -14,14 +14,12 @@ inline constexpr int kMapStep = 4;
 // The submaps of the drives of one snapshot, straight from the store, which only ever adds some.
 class StoredSubmaps final : public merge::SubmapSource {
  public:
-  // step 1: all; otherwise only keyframes that are multiples of it.
-  StoredSubmaps(FleetLink* link, const std::vector<DriveId>* ids, int step = 1) : link_(link), ids_(ids), step_(step) {}
-  const merge::SubmapCloud* Find(merge::SubmapKey key) override;
+  StoredSubmaps(FleetLink* link, const std::vector<DriveId>* ids) : link_(link), ids_(ids) {}
+  std::shared_ptr<const merge::SubmapCloud> Find(merge::SubmapKey key) override;
 
  private:
   FleetLink* link_;
   const std::vector<DriveId>* ids_;
-  int step_;
 };
 
 // What each drive sent, and its heap calls.

@@ -166,7 +166,8 @@ void Server::FetchMap(const Merged& merged) {
 }
 
 void Server::WriteOutput(const Merged& merged) {
-  StoredSubmaps submaps(&link_, &merged.fleet.ids, kMapStep);
+  StoredSubmaps stored(&link_, &merged.fleet.ids);
+  merge::ThinnedSubmaps submaps(&stored, kMapStep);
   report::OutcomeInput input;
   input.title = fmt::format("Map of {} vehicles", merged.fleet.drives.size());
   input.drives = &merged.fleet.drives;

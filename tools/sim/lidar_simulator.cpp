@@ -127,11 +127,11 @@ Vlp16Packet LidarSimulator::Packet(std::int64_t index) const {
 }
 
 void LidarSimulator::AppendPoints(std::int64_t index, std::vector<Vector3f>* world_points) const {
-  Fire(index, [&](std::size_t, std::size_t, const Vlp16Return& measured, const Vector3f& origin,
-                  const Vector3f& direction) {
-    const auto distance_m = static_cast<float>(measured.distance_2mm * Vlp16::kDistanceUnit_m);
-    world_points->push_back(origin + distance_m * direction);
-  });
+  Fire(index,
+       [&](std::size_t, std::size_t, const Vlp16Return& measured, const Vector3f& origin, const Vector3f& direction) {
+         const auto distance_m = static_cast<float>(measured.distance_2mm * Vlp16::kDistanceUnit_m);
+         world_points->push_back(origin + distance_m * direction);
+       });
 }
 
 }  // namespace mapweld::sim

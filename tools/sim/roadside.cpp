@@ -75,7 +75,8 @@ class Clearance {
         int& n = ends[road.nodes[i]];
         const int before = n;
         n += (i > 0 ? 1 : 0) + (i + 1 < road.nodes.size() ? 1 : 0);
-        if (before < 3 && n >= 3 && area.Contains(road.line[i])) junctions_.Add(around({road.line[i]}, kReach_m), road.line[i]);
+        if (before < 3 && n >= 3 && area.Contains(road.line[i]))
+          junctions_.Add(around({road.line[i]}, kReach_m), road.line[i]);
         if (i == 0) continue;
         const double reach = (road.line[i] - road.line[i - 1]).norm();
         if (area.Grown(reach).Contains(road.line[i])) {

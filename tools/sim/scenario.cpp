@@ -145,8 +145,8 @@ std::filesystem::path ScenarioByName(const std::string& name) {
     if (entry.path().extension() == ".json") known.push_back(entry.path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  throw std::runtime_error(fmt::format("there is no scenario '{}'; give one of {} or a .json file", name,
-                                       fmt::join(known, ", ")));
+  throw std::runtime_error(
+      fmt::format("there is no scenario '{}'; give one of {} or a .json file", name, fmt::join(known, ", ")));
 }
 
 }  // namespace mapweld::sim

@@ -54,11 +54,12 @@ void PrintSubmaps(const SimSummary& summary, const std::filesystem::path& out) {
     sum.keyframes += v.log.keyframes;
     sum.submap_bytes += v.log.submap_bytes;
   }
-  fmt::print("{}: {} drives, {:.1f} km, {} overlapping pairs, {} keyframes, {} scans, {:.1f} kB per submap; {:.0f} s, "
-             "town ready after {:.1f} s\n",
-             out.string(), summary.vehicles.size(), length_m * 1e-3, summary.overlaps, sum.keyframes, sum.scans,
-             static_cast<double>(sum.submap_bytes) * 1e-3 / static_cast<double>(std::max<std::int64_t>(sum.keyframes, 1)),
-             summary.drive_s, summary.prepare_s);
+  fmt::print(
+      "{}: {} drives, {:.1f} km, {} overlapping pairs, {} keyframes, {} scans, {:.1f} kB per submap; {:.0f} s, "
+      "town ready after {:.1f} s\n",
+      out.string(), summary.vehicles.size(), length_m * 1e-3, summary.overlaps, sum.keyframes, sum.scans,
+      static_cast<double>(sum.submap_bytes) * 1e-3 / static_cast<double>(std::max<std::int64_t>(sum.keyframes, 1)),
+      summary.drive_s, summary.prepare_s);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "tools/sim/hash_noise.hpp"
-#include "tools/sim/overlap_truth.hpp"
 #include "tools/sim/output_file.hpp"
+#include "tools/sim/overlap_truth.hpp"
 #include "tools/sim/sim_world.hpp"
 #include "tools/sim/staged_folder.hpp"
 
@@ -57,6 +57,13 @@ std::vector<Job> SelectJobs(const Scenario& scenario, const SimOptions& options,
   return jobs;
 }
 
+std::string WireFolder(int id) {
+  return fmt::format("vehicle_{}", id);
+}
+std::string LogName(int id) {
+  return fmt::format("agent_{}", id);
+}
+
 VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job, const SimOptions& options,
                      const std::filesystem::path& out, const std::function<void(int, double)>& progress) {
   const VehicleMotion motion(lane, DrivingStyle{}, job.seed);
@@ -73,7 +80,7 @@ VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job
     spec.start_past_hour_ns = job.start_past_hour_ns;
     spec.duration_s = summary.duration_s;
     spec.seed = job.seed;
-    const std::filesystem::path folder = out / fmt::format("vehicle_{}", job.id);
+    const std::filesystem::path folder = out / WireFolder(job.id);
     std::filesystem::create_directories(folder);
     summary.counts = WriteRecording(world.caster(), motion, spec, folder, report);
   } else {
@@ -82,7 +89,7 @@ VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job
     spec.start_past_hour_ns = job.start_past_hour_ns;
     spec.duration_s = summary.duration_s;
     spec.seed = job.seed;
-    const std::string name = fmt::format("agent_{}", job.id);
+    const std::string name = LogName(job.id);
     std::filesystem::create_directories(out / "truth");
     summary.log =
         WriteAgentLog(world.caster(), motion, spec, out / (name + ".lcm"), out / "truth" / (name + ".tum"), report);
@@ -133,12 +140,17 @@ nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world,
   const std::vector<int> ids = VehicleIds(scenario);
   ordered_json vehicles = ordered_json::array();
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    ordered_json vehicle = {{"id", jobs[k].id},
-                            {"name", fmt::format("agent_{}", jobs[k].id)},
-                            {"zone", world.zone(jobs[k].index)},
-                            {"start_s", static_cast<double>(jobs[k].start_past_hour_ns) * 1e-9},
-                            {"duration_s", summary.vehicles[k].duration_s},
-                            {"length_m", summary.vehicles[k].length_m}};
+    ordered_json vehicle;
+    vehicle["id"] = jobs[k].id;
+    if (depth == Depth::kWire) {
+      vehicle["folder"] = WireFolder(jobs[k].id);
+    } else {
+      vehicle["log"] = LogName(jobs[k].id) + ".lcm";
+    }
+    vehicle["zone"] = world.zone(jobs[k].index);
+    vehicle["start_s"] = static_cast<double>(jobs[k].start_past_hour_ns) * 1e-9;
+    vehicle["duration_s"] = summary.vehicles[k].duration_s;
+    vehicle["length_m"] = summary.vehicles[k].length_m;
     if (!scenario.survey) {
       for (const GeoPoint& p : scenario.vehicles[jobs[k].index].waypoints) {
         vehicle["route_lat_lon"].push_back({p.lat_deg, p.lon_deg});
@@ -186,8 +198,8 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
   const std::vector<LanePath> lanes = PlanLanes(world, options.threads);
   const std::vector<TrueOverlap> overlaps = FindTrueOverlaps(lanes);
   SimSummary summary;
-  summary.overlaps = static_cast<int>(std::count_if(
-      overlaps.begin(), overlaps.end(), [](const TrueOverlap& o) { return o.Shared() >= kMinOverlap_m; }));
+  summary.overlaps = static_cast<int>(std::count_if(overlaps.begin(), overlaps.end(),
+                                                    [](const TrueOverlap& o) { return o.Shared() >= kMinOverlap_m; }));
   summary.prepare_s = SecondsSince(begin);
   summary.vehicles.resize(jobs.size());
   InParallel(jobs.size(), options.threads, [&](std::size_t i) {

@@ -48,8 +48,8 @@ struct SimSummary {
 inline constexpr double kMinOverlap_m = 30;  // driven together, to be listed as an overlap; less is a crossing
 
 // Vehicle n starts 600 + n seconds past the hour. Writes the drives and `out`/scenario.json, which lists the true
-// overlaps, beside `out` first and moves them into place at the end; an earlier recording at `out` is replaced, anything else there is refused.
-// `progress(vehicle, share)` is called by several threads. Throws std::runtime_error.
+// overlaps, beside `out` first and moves them into place at the end; an earlier recording at `out` is replaced,
+// anything else there is refused. `progress(vehicle, share)` is called by several threads. Throws std::runtime_error.
 SimSummary Simulate(const SimOptions& options, const std::function<void(int, double)>& progress);
 
 }  // namespace mapweld::sim

@@ -79,8 +79,8 @@ std::vector<std::vector<std::uint32_t>> ChooseZones(const RoadGraph& graph, cons
     if (apart && !candidate.nodes.empty()) chosen.push_back(std::move(candidate));
   }
   if (static_cast<int>(chosen.size()) < plan.zones) {
-    throw std::runtime_error(fmt::format("the town has room for {} zones of {:.0f} m radius, not for {}",
-                                         chosen.size(), plan.zone_radius_m, plan.zones));
+    throw std::runtime_error(fmt::format("the town has room for {} zones of {:.0f} m radius, not for {}", chosen.size(),
+                                         plan.zone_radius_m, plan.zones));
   }
   std::vector<std::vector<std::uint32_t>> zones;
   for (Candidate& c : chosen) zones.push_back(std::move(c.nodes));
@@ -122,15 +122,16 @@ StreetPath Wander(const RoadGraph& graph, const std::vector<std::uint32_t>& zone
   for (int goal = 0; goal < kMaxGoals && driven_m < length_m; ++goal) {
     const std::uint32_t here = path.nodes.back();
     const std::uint32_t before = path.nodes.size() > 1 ? path.nodes[path.nodes.size() - 2] : here;
-    const std::vector<std::uint32_t> leg = graph.ShortestPath(here, random_node(), [&](std::uint32_t a, std::uint32_t b) {
-      return allowed[b] != 0 && !(a == here && b == before);
-    });
+    const std::vector<std::uint32_t> leg = graph.ShortestPath(
+        here, random_node(),
+        [&](std::uint32_t a, std::uint32_t b) { return allowed[b] != 0 && !(a == here && b == before); });
     for (std::size_t i = 1; i < leg.size() && driven_m < length_m; ++i) {
       driven_m += (graph.Position(leg[i]) - graph.Position(leg[i - 1])).norm();
       path.nodes.push_back(leg[i]);
     }
   }
-  if (driven_m < length_m) throw std::runtime_error("a zone of the survey has no loop to drive; choose a larger radius");
+  if (driven_m < length_m)
+    throw std::runtime_error("a zone of the survey has no loop to drive; choose a larger radius");
   for (const std::uint32_t node : path.nodes) path.centreline.push_back(graph.Position(node));
   return path;
 }

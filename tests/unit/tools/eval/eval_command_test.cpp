@@ -28,6 +28,7 @@ std::string Output(const std::vector<std::string>& arguments) {
   CLI::App app;
   AddEvalCommand(app);
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  reversed.emplace_back("trajectories");
   reversed.emplace_back("eval");
   testing::internal::CaptureStdout();
   std::string failure;

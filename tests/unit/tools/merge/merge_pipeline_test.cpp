@@ -180,7 +180,9 @@ TEST(MergeDrives, GivesTheSameBytesAfterGrowingWithACache) {
 // A source that has only what it was given.
 class PartialSubmaps : public SubmapSource {
  public:
-  const SubmapCloud* Find(SubmapKey key) override { return here.contains(key) ? all_.Find(key) : nullptr; }
+  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override {
+    return here.contains(key) ? all_.Find(key) : nullptr;
+  }
   std::set<SubmapKey> here;
 
  private:

@@ -164,8 +164,8 @@ FakeTown::FakeTown(int drive_count, int keyframe_count) {
                   {"pose graph", 2.05},          {"refinement", 6.4},         {"merged map", 1.9}};
 }
 
-const merge::SubmapCloud* FakeTown::Find(merge::SubmapKey key) {
-  return &submaps_.at(static_cast<std::size_t>(key.drive)).at(static_cast<std::size_t>(key.keyframe));
+std::shared_ptr<const merge::SubmapCloud> FakeTown::Find(merge::SubmapKey key) {
+  return merge::Kept(&submaps_.at(static_cast<std::size_t>(key.drive)).at(static_cast<std::size_t>(key.keyframe)));
 }
 
 }  // namespace mapweld::test

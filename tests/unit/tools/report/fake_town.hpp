@@ -17,7 +17,7 @@ class FakeTown : public merge::SubmapSource {
   std::vector<merge::Drive> drives;
   merge::MergeResult result;
 
-  const merge::SubmapCloud* Find(merge::SubmapKey key) override;
+  std::shared_ptr<const merge::SubmapCloud> Find(merge::SubmapKey key) override;
 
  private:
   std::vector<std::vector<merge::SubmapCloud>> submaps_;

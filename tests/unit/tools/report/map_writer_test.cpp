@@ -44,7 +44,9 @@ class OneKeyframe : public merge::SubmapSource {
     result.groups = {{0}};
     result.merged_T_body = {{merged_T_body}};
   }
-  const merge::SubmapCloud* Find(merge::SubmapKey) override { return present ? &cloud : nullptr; }
+  std::shared_ptr<const merge::SubmapCloud> Find(merge::SubmapKey) override {
+    return present ? merge::Kept(&cloud) : nullptr;
+  }
 };
 
 TEST(MergedMap, PutsSubmapPointsWhereTheTiltedBodySawThem) {

@@ -14,7 +14,7 @@ namespace {
 
 class DemoDrives : public testing::Test {
  protected:
-  static void SetUpTestSuite() { world_ = new SimWorld(ReadScenario(ScenarioByName("four_drives"))); }
+  static void SetUpTestSuite() { world_ = new SimWorld(ReadScenario(ScenarioByName("four_drives")), 1); }
   static void TearDownTestSuite() { delete world_; }
   static SharedStreet Shared(std::size_t a, std::size_t b) {  // by id
     return FindSharedStreet(world_->route(a - 1), world_->route(b - 1));
