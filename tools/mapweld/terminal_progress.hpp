@@ -9,7 +9,8 @@
 
 namespace mapweld::merge {
 
-// Progress on stderr: one line that is written over on a terminal, one line per finished stage elsewhere.
+// Progress on stderr: one line that is written over on a terminal, elsewhere one
+// line per finished stage and every ten seconds.
 class TerminalProgress final : public Progress {
  public:
   explicit TerminalProgress(std::string command);
@@ -24,7 +25,7 @@ class TerminalProgress final : public Progress {
   std::string subject_;
   bool terminal_;
   bool line_open_ = false;
-  std::chrono::steady_clock::time_point last_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace mapweld::merge

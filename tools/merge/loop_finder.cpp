@@ -86,23 +86,19 @@ LoopTry LoopFinder::Judge(int a, int b, const Registration& registration, double
 LoopTry LoopFinder::Search(int a, int b) {
   const auto submap_a = Submap({index_a_, a});
   const auto submap_b = Submap({index_b_, b});
-  LoopTry best;
   if (submap_a == nullptr || submap_b == nullptr) {
-    best.answer = LoopTry::Answer::kMissing;
-    best.test = "submaps missing";
-    return best;
+    LoopTry out;
+    out.answer = LoopTry::Answer::kMissing;
+    out.test = "submaps missing";
+    return out;
   }
-  best.test = "registration";
+  std::vector<Pose3> guesses;
   for (const BevPeak& peak : SearchBev(*submap_a, *submap_b, kPeaks)) {
     const Pose3 guess{{peak.x_m, peak.y_m, 0}, geom::Quatd(Eigen::AngleAxisd(peak.yaw_rad, Vec3d::UnitZ()))};
-    const Registration registration =
-        Register(*submap_a, *submap_b, WithGroundHeight(*submap_a, *submap_b, guess), config_->registration);
-    const LoopTry candidate = Judge(a, b, registration, config_->verify.seed_evidence);
-    const bool better = candidate.answer == best.answer ? candidate.loop.evidence > best.loop.evidence
-                                                        : candidate.answer == LoopTry::Answer::kSame;
-    if (better) best = candidate;
+    guesses.push_back(WithGroundHeight(*submap_a, *submap_b, guess));
   }
-  return best;
+  const Registration registration = RegisterBest(*submap_a, *submap_b, guesses, config_->registration);
+  return Judge(a, b, registration, config_->verify.seed_evidence);
 }
 
 LoopTry LoopFinder::Check(int a, int b, const Pose3& predicted_a_T_b, double slack_m) {

@@ -23,10 +23,12 @@ std::size_t ColumnOf(const Eigen::Vector3f& p) {
   return static_cast<std::size_t>(ColumnOf(p.x()) * PreparedSubmap::kColumns + ColumnOf(p.y()));
 }
 
-// Spreads 0..n-1 so that neighbours in the order are far apart in the list: multiplication by the golden ratio.
-std::vector<std::uint32_t> MixedOrder(std::vector<std::uint32_t> list) {
+// Up to `most` of the list, far apart in it from one to the next: multiplication by the golden ratio spreads 0..n-1.
+std::vector<std::uint32_t> MixedOrder(std::vector<std::uint32_t> list, std::size_t most) {
   const auto key = [](std::uint32_t i) { return i * 2654435769U; };
-  std::sort(list.begin(), list.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  const auto end = list.begin() + static_cast<std::ptrdiff_t>(std::min(most, list.size()));
+  std::partial_sort(list.begin(), end, list.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  list.erase(end, list.end());
   return list;
 }
 
@@ -147,7 +149,7 @@ void PreparedSubmap::DrawBev() {
     for (std::uint32_t c = 0; c < fine.size(); ++c) {
       if (fine[c] == value) of_value.push_back(c);
     }
-    for (const std::uint32_t c : MixedOrder(of_value)) {
+    for (const std::uint32_t c : MixedOrder(of_value, BevImage::kStrongest)) {
       if (bev_.strongest.size() == BevImage::kStrongest) return;
       bev_.strongest.emplace_back(static_cast<float>(c / kColumns) + 0.5F - kHalfSize_m,
                                   static_cast<float>(c % kColumns) + 0.5F - kHalfSize_m);
@@ -181,15 +183,12 @@ void PreparedSubmap::ChooseSamples() {
   for (std::uint32_t i = 0; i < points_.size(); ++i) {
     (surfels_[surfel_of_[i]].is_structure ? structure : ground).push_back(i);
   }
-  structure = MixedOrder(std::move(structure));
-  ground = MixedOrder(std::move(ground));
-  structure_samples_.assign(structure.begin(), structure.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                       structure.size(), kMaxStructureSamples)));
-  const std::size_t of_structure = std::min(structure.size(), kMaxSamples * 3 / 4);
-  const std::size_t of_ground = std::min(ground.size(), kMaxSamples - of_structure);
-  samples_.assign(structure.begin(), structure.begin() + static_cast<std::ptrdiff_t>(of_structure));
-  samples_.insert(samples_.end(), ground.begin(), ground.begin() + static_cast<std::ptrdiff_t>(of_ground));
-  samples_ = MixedOrder(std::move(samples_));
+  samples_ = MixedOrder(std::move(structure), kMaxSamples * 3 / 4);
+  structure_samples_.assign(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(
+                                                                     std::min(samples_.size(), kMaxStructureSamples)));
+  ground = MixedOrder(std::move(ground), kMaxSamples - samples_.size());
+  samples_.insert(samples_.end(), ground.begin(), ground.end());
+  samples_ = MixedOrder(std::move(samples_), kMaxSamples);
 }
 
 int PreparedSubmap::NearestSurfel(const Eigen::Vector3f& p, float max_distance_m) const {

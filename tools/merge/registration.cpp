@@ -210,10 +210,29 @@ Pose3 WithGroundHeight(const PreparedSubmap& a, const PreparedSubmap& b, const P
 
 Registration Register(const PreparedSubmap& a, const PreparedSubmap& b, const Pose3& guess_a_T_b,
                       const RegistrationConfig& config) {
+  return RegisterBest(a, b, {&guess_a_T_b, 1}, config);
+}
+
+Registration RegisterBest(const PreparedSubmap& a, const PreparedSubmap& b, std::span<const Pose3> guesses_a_T_b,
+                          const RegistrationConfig& config) {
+  constexpr std::size_t kFirstStride = 4;
   Registration out;
-  out.a_T_b = guess_a_T_b;
+  double best_overlap = -1;
+  for (const Pose3& guess : guesses_a_T_b) {
+    Registration candidate;
+    candidate.a_T_b = guess;
+    (void)Descend(a, b, config.first_gate_m, kFirstStride, config, &candidate);
+    if (guesses_a_T_b.size() > 1) {
+      const double distance_m = config.partner_distance_m;
+      const double of_b = CountPartners(a, b, candidate.a_T_b, distance_m, kFirstStride).Share();
+      const double of_a = CountPartners(b, a, candidate.a_T_b.Inverse(), distance_m, kFirstStride).Share();
+      if (std::min(of_a, of_b) <= best_overlap) continue;
+      best_overlap = std::min(of_a, of_b);
+    }
+    out = candidate;
+  }
+  if (guesses_a_T_b.empty()) return out;
   const double middle_gate_m = 0.5 * (config.first_gate_m + config.last_gate_m);
-  (void)Descend(a, b, config.first_gate_m, 4, config, &out);
   (void)Descend(a, b, middle_gate_m, 2, config, &out);
   out.converged = Descend(a, b, config.last_gate_m, 1, config, &out);
   const Normal normal = Linearize(a, b, out.a_T_b, config.last_gate_m, config.kernel_sigma, 1);

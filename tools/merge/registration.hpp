@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "core/geom/pose3.hpp"
 #include "tools/merge/prepared_submap.hpp"
@@ -47,6 +48,11 @@ struct Registration {
 // Cost: about 5 ms for submaps of 10 k points. Never fails: an answer that is no good shows in its numbers.
 Registration Register(const PreparedSubmap& a, const PreparedSubmap& b, const geom::Pose3& guess_a_T_b,
                       const RegistrationConfig& config);
+
+// The same from the best of several guesses: all take the first, cheap steps, the one whose overlap is greatest then
+// takes the others. Cost: about 1.5 ms per guess, and 4 ms. No guess: not converged.
+Registration RegisterBest(const PreparedSubmap& a, const PreparedSubmap& b, std::span<const geom::Pose3> guesses_a_T_b,
+                          const RegistrationConfig& config);
 
 // guess with its height replaced by the median difference of the lowest points under a common cell.
 geom::Pose3 WithGroundHeight(const PreparedSubmap& a, const PreparedSubmap& b, const geom::Pose3& guess_a_T_b);
