@@ -48,6 +48,7 @@ struct VerifyConfig {
   int min_loops = 3;
   double persist_m = 50;            // how far the walk along an overlap goes on without a loop: a look-alike is small
   double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
+  double min_mean_overlap = 0.58;   // over the near keyframe pairs: clearly more must agree than not
   double max_torn_share = 0.3;      // mean over the near keyframe pairs; see Registration::torn_share
 };
 

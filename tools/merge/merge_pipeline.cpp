@@ -167,6 +167,9 @@ class Merge {
       const auto loops = static_cast<int>(found.loops.size());
       if (loops < verify.min_loops || found.evidence < verify.min_total_evidence) return;
       if (found.contradictions > verify.max_contradiction * (loops + found.contradictions)) return;
+      double agreement = 0;
+      for (const VerifiedLoop& loop : found.loops) agreement += loop.overlap_ratio;
+      if (agreement < verify.min_mean_overlap * loops) return;
       if (overlap == nullptr) {
         out_.overlaps.push_back({});
         overlap = &out_.overlaps.back();

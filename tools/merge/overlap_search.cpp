@@ -53,8 +53,7 @@ class Walk {
 
   Hypothesis Run(const VerifiedLoop& seed) {
     out_.loops.push_back(seed);
-    out_.near_pairs = 1;
-    out_.torn = seed.torn_share;
+    CountNear(seed);
     out_.evidence = seed.evidence;
     tried_.emplace_back(seed.a, seed.b);
     std::vector<Stand> open{{seed, 0}};
@@ -145,6 +144,7 @@ class Walk {
 
   void CountNear(const VerifiedLoop& loop) {
     ++out_.near_pairs;
+    out_.overlap += loop.overlap_ratio;
     out_.torn += loop.torn_share;
   }
 
@@ -156,12 +156,19 @@ class Walk {
 
 // Which of two refusals came further.
 int Rank(const std::string& test) {
-  constexpr const char* kOrder[] = {"no likeness",      "registration",
-                                    "little in common", "tilt",
-                                    "overlap ratio",    "slides along the street",
-                                    "odometry",         "contradiction",
-                                    "look-alike",       "too little evidence",
-                                    "too few matches",  "submaps missing"};
+  constexpr const char* kOrder[] = {"no likeness",
+                                    "registration",
+                                    "little in common",
+                                    "tilt",
+                                    "overlap ratio",
+                                    "slides along the street",
+                                    "odometry",
+                                    "contradiction",
+                                    "look-alike",
+                                    "little agreement",
+                                    "too little evidence",
+                                    "too few matches",
+                                    "submaps missing"};
   const auto* at = std::find(std::begin(kOrder), std::end(kOrder), test);
   return static_cast<int>(at - std::begin(kOrder));
 }
@@ -180,6 +187,8 @@ void Decide(const VerifyConfig& config, Hypothesis* hypothesis) {
     hypothesis->test = "contradiction";
   } else if (hypothesis->torn > config.max_torn_share * hypothesis->near_pairs) {
     hypothesis->test = "look-alike";
+  } else if (hypothesis->overlap < config.min_mean_overlap * hypothesis->near_pairs) {
+    hypothesis->test = "little agreement";
   } else if (static_cast<int>(hypothesis->loops.size()) < config.min_loops) {
     hypothesis->test = hypothesis->missing > 0 ? "submaps missing" : "too few matches";
   } else if (hypothesis->evidence < config.min_total_evidence) {

@@ -17,6 +17,7 @@ struct Hypothesis {
   std::vector<VerifiedLoop> loops;  // the seed first
   int near_pairs = 0;               // pairs that must agree if the hypothesis holds, and were tried
   int contradictions = 0;           // those that did not
+  double overlap = 0;               // sum of their overlap ratios
   double torn = 0;                  // sum of their torn shares
   int missing = 0;                  // steps that could not be tried for want of a submap
   double evidence = 0;              // sum over the loops
