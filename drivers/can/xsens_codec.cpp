@@ -88,8 +88,9 @@ Status XsensCodec::Check(const CanFrame& frame) {
 }
 
 void XsensCodec::Tear() {
-  if (!group_.done) ++counters_.torn_groups;
+  if (!group_.done || held_) ++counters_.torn_groups;
   group_.done = true;
+  held_ = false;
 }
 
 Status XsensCodec::Store(const CanFrame& frame) {
@@ -126,11 +127,25 @@ Status XsensCodec::Store(const CanFrame& frame) {
 }
 
 Status XsensCodec::Finish(sensor::ImuSample* sample) {
-  if (!continuity_.Accept(group_, tick_ns_)) {
+  const XsensContinuity::Verdict verdict = continuity_.Judge(group_, tick_ns_);
+  if (verdict == XsensContinuity::Verdict::kTorn) {
     Tear();
     return Status::kBadInput;
   }
   group_.done = true;
+  held_ = verdict == XsensContinuity::Verdict::kLate;
+  return held_ ? Status::kNotReady : Emit(sample);
+}
+
+// `frame`: the SampleTime of the next group.
+Status XsensCodec::ReleaseHeld(const CanFrame& frame, sensor::ImuSample* sample) {
+  const auto ticks = ByteReader(std::span(frame.data).first(frame.dlc)).Big<std::uint32_t>();
+  if (!held_ || !continuity_.FollowsDirectly(ticks)) return Status::kNotReady;  // Store tears what is held
+  held_ = false;
+  return Emit(sample);
+}
+
+Status XsensCodec::Emit(sensor::ImuSample* sample) {
   TimeNs t;
   const Status status = clock_.ToTime(group_.sample_time_ticks, group_.first_receive, &t);
   if (status != Status::kOk || (emitted_ && t <= last_t_)) {
@@ -152,8 +167,10 @@ Status XsensCodec::Push(const CanFrame& frame, sensor::ImuSample* sample) {
   ++counters_.frames;
   if (frame.gap) Tear();
   if (const Status status = Check(frame); status != Status::kOk) return status;
+  Status released = Status::kNotReady;
+  if (FindXsensMessage(frame.id)->field == XsensField::kSampleTime) released = ReleaseHeld(frame, sample);
   if (const Status status = Store(frame); status != Status::kOk) return status;
-  if ((group_.parts & XsensGroup::kNeeded) != XsensGroup::kNeeded) return Status::kNotReady;
+  if ((group_.parts & XsensGroup::kNeeded) != XsensGroup::kNeeded) return released;
   return Finish(sample);
 }
 

@@ -48,8 +48,9 @@ class XsensCodec {
 
   explicit XsensCodec(const XsensOptions& options);
 
-  // kOk: *sample is a new sample. kNotReady: the frame was used, the sample is not complete. kEmpty: a known message
-  // that is not needed. Everything else is a refusal, counted by cause; *sample is then unchanged.
+  // kOk: *sample is a new sample; of a group that the bus delayed it comes with the SampleTime of the next. kNotReady:
+  // the frame was used, the sample is not complete. kEmpty: a known message that is not needed. Everything else is a
+  // refusal, counted by cause; *sample is then unchanged.
   Status Push(const CanFrame& frame, sensor::ImuSample* sample);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -62,12 +63,15 @@ class XsensCodec {
   Status Check(const CanFrame& frame);
   Status Store(const CanFrame& frame);
   Status Finish(sensor::ImuSample* sample);
+  Status Emit(sensor::ImuSample* sample);
+  Status ReleaseHeld(const CanFrame& frame, sensor::ImuSample* sample);
   void Tear();
 
   std::int64_t tick_ns_;
   time::SensorClock clock_;
   XsensGroup group_;
   XsensContinuity continuity_;
+  bool held_ = false;  // group_ is complete but late: see XsensContinuity
   bool emitted_ = false;
   TimeNs last_t_;
   Counters counters_;

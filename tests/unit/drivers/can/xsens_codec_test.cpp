@@ -203,6 +203,41 @@ TEST(XsensCodec, SeesFromTheFramesThatTwoGroupsWereJoined) {
   }
 }
 
+TEST(XsensCodec, KeepsAGroupThatABusyBusDelayed) {
+  XsensCodec codec({});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 10; ++k) {
+    auto group = Group({.ticks = 25 * k,
+                        .counter = static_cast<std::uint16_t>(k),
+                        .gyro = {static_cast<int>(k), 0, 0},
+                        .receive_ns = 1'000'000'000 + k * 2'500'000LL});
+    // The end of group 5 comes more than a period late, right before group 6.
+    if (k == 5) group[4].receive = {group[0].receive.ns + 2'600'000};
+    const int got = PushAll(&codec, group, &sample);
+    EXPECT_EQ(got, k == 5 ? 0 : (k == 6 ? 2 : 1)) << k;
+    samples += got;
+  }
+  EXPECT_EQ(samples, 10);
+  EXPECT_EQ(codec.Rejected(), 0U);
+}
+
+TEST(XsensCodec, DropsAGroupThatTookItsEndFromTheNext) {
+  XsensCodec codec({});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 10; ++k) {
+    const auto group = Group(
+        {.ticks = 25 * k, .counter = static_cast<std::uint16_t>(k), .receive_ns = 1'000'000'000 + k * 2'500'000LL});
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if ((k == 5 && i == 4) || (k == 6 && i < 4)) continue;  // lost without a trace
+      samples += codec.Push(group[i], &sample) == Status::kOk ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(samples, 8);
+  EXPECT_EQ(codec.counters().torn_groups, 1U);
+}
+
 TEST(XsensCodec, CrossesTheWrapsOfBothCounters) {
   XsensCodec codec({});
   sensor::ImuSample sample;
