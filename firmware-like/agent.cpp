@@ -59,6 +59,13 @@ bool Agent::Boot(std::span<char> message) {
                 static_cast<int>(options_.lidar_port),
                 lidar == Status::kFull ? "another program has it" : std::strerror(errno));
   }
+  if (const Status status = imu_.LoadDescription(options_); status != Status::kOk) {
+    const char* why = status == Status::kIo ? std::strerror(errno)
+                      : status == Status::kEmpty
+                          ? "a signal of --imu-signals is not in it, or more than once"
+                          : "a signal of --imu-signals is not described as docs/wire.md says, or has an unknown unit";
+    return fail("cannot use the IMU description %s: %s", options_.imu_dbc_path, why);
+  }
   if (imu_.Open(options_) != Status::kOk) {
     if (options_.candump_path != nullptr) {
       return fail("cannot read the CAN log %s: %s", options_.candump_path, std::strerror(errno));

@@ -18,8 +18,7 @@ class LidarSource {
   explicit LidarSource(const Options& options);
 
   // Reads the sensor's own angles, if a file was given. kIo with errno when it cannot be read, kFull when it is longer
-  // than kMaxCalibrationBytes, kBadInput or kVersion when it is not the file of this model.
-  static constexpr std::size_t kMaxCalibrationBytes = 65536;
+  // than kMaxSetupFileBytes, kBadInput or kVersion when it is not the file of this model.
   Status LoadCalibration(const Options& options);
 
   // As UdpPort::Open.

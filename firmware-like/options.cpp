@@ -20,6 +20,8 @@ const char kHelpText[] =
     "  --state-dir DIR       keeps the boot count and the spool of unsent submaps\n"
     "  --can IFACE           SocketCAN interface with the IMU, for example can0\n"
     "  --candump FILE        read the IMU's frames from a `candump -L` log instead\n"
+    "  --imu-dbc FILE        the IMU is not an Xsens MTi but described by this CAN database\n"
+    "  --imu-signals NAMES   its turn rates x,y,z and accelerations x,y,z: six signal names, separated by commas\n"
     "  --lidar MODEL         vlp16, hdl32e, vlp32c, xt32 or os1 (vlp16)\n"
     "  --lidar-calibration FILE  os1: the sensor's metadata (JSON); xt32: its angle correction file (nominal angles)\n"
     "  --lidar-port PORT     UDP port of the LiDAR's data packets (2368; os1: 7502)\n"
@@ -90,11 +92,20 @@ const char* LidarCalibrationProblem(const Options& options) {
   return given && options.lidar_model != LidarModel::kXt32 ? "--lidar-calibration is for os1 and xt32 only" : nullptr;
 }
 
+const char* ImuDescriptionProblem(const Options& options) {
+  if ((options.imu_dbc_path == nullptr) != (options.imu_signals == nullptr))
+    return "--imu-dbc and --imu-signals go together";
+  const bool clockless = options.imu_dbc_path != nullptr && options.time_source == TimeSource::kShared;
+  return clockless ? "--imu-dbc needs --time receive: such an IMU has no clock of its own" : nullptr;
+}
+
 enum OptionId : int {
   kAgentId = 1000,
   kStateDir,
   kCan,
   kCandump,
+  kImuDbc,
+  kImuSignals,
   kLidar,
   kLidarCalibration,
   kLidarPort,
@@ -113,6 +124,8 @@ constexpr option kOptions[] = {
     {"state-dir", required_argument, nullptr, kStateDir},
     {"can", required_argument, nullptr, kCan},
     {"candump", required_argument, nullptr, kCandump},
+    {"imu-dbc", required_argument, nullptr, kImuDbc},
+    {"imu-signals", required_argument, nullptr, kImuSignals},
     {"lidar", required_argument, nullptr, kLidar},
     {"lidar-calibration", required_argument, nullptr, kLidarCalibration},
     {"lidar-port", required_argument, nullptr, kLidarPort},
@@ -143,6 +156,12 @@ bool Apply(int id, const char* value, Options* options) {
       return true;
     case kCandump:
       options->candump_path = value;
+      return true;
+    case kImuDbc:
+      options->imu_dbc_path = value;
+      return true;
+    case kImuSignals:
+      options->imu_signals = value;
       return true;
     case kLidar:
       return ParseLidarModel(value, &options->lidar_model);
@@ -212,6 +231,9 @@ ParsedOptions ParseOptions(int argc, char** argv) {
     return fail("%s: give one of them, the IMU's frames must come from somewhere (see --help)", "--can, --candump");
   }
   if (const char* problem = LidarCalibrationProblem(parsed.options); problem != nullptr) {
+    return fail("%s (see --help)", problem);
+  }
+  if (const char* problem = ImuDescriptionProblem(parsed.options); problem != nullptr) {
     return fail("%s (see --help)", problem);
   }
   if (parsed.options.lidar_port == 0) parsed.options.lidar_port = DefaultPort(parsed.options.lidar_model);

@@ -21,6 +21,8 @@ struct Options {
   int agent_id = 0;
   const char* can_interface = nullptr;  // one of these two
   const char* candump_path = nullptr;
+  const char* imu_dbc_path = nullptr;  // null: an Xsens MTi
+  const char* imu_signals = nullptr;   // with imu_dbc_path: six names, see DbcImuCodec
   LidarModel lidar_model = LidarModel::kVlp16;
   const char* lidar_calibration_path = nullptr;  // needed by kOs1, possible with kXt32
   std::uint16_t lidar_port = 0;                  // 0 until parsed: the model's own

@@ -50,6 +50,18 @@ TEST(Options, KnowTheLidarModelsAndWhichNeedACalibration) {
   EXPECT_THAT(with({"--lidar", "vlp16", "--lidar-calibration", "a"}).message, HasSubstr("os1 and xt32 only"));
 }
 
+TEST(Options, TakeAnotherImuOnlyWithItsSignalsAndAFreeClock) {
+  const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), good.begin(), good.end());
+    return Parse(more);
+  };
+  EXPECT_EQ(with({"--imu-dbc", "a.dbc", "--imu-signals", "a,b,c,d,e,f", "--time", "receive"}).outcome,
+            ParseOutcome::kRun);
+  EXPECT_THAT(with({"--imu-dbc", "a.dbc", "--time", "receive"}).message, HasSubstr("go together"));
+  EXPECT_THAT(with({"--imu-dbc", "a.dbc", "--imu-signals", "a,b,c,d,e,f"}).message, HasSubstr("--time receive"));
+}
+
 TEST(Options, SayWhichValueIsWrong) {
   const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
   const auto with = [&](std::vector<std::string> more) {

@@ -291,7 +291,7 @@ TEST(XsensCodec, NeverGoesBackInTime) {
 }
 
 TEST(XsensTable, HoldsEveryWantedIdentifier) {
-  for (const std::uint16_t id : kXsensWantedIds) {
+  for (const std::uint32_t id : kXsensWantedIds) {
     ASSERT_NE(FindXsensMessage(id), nullptr);
     EXPECT_NE(FindXsensMessage(id)->field, XsensField::kNone);
   }
