@@ -9,6 +9,7 @@ namespace {
 
 can::XsensOptions CodecOptions(const Options& options) {
   can::XsensOptions codec;
+  codec.sample_time_unit = can::SampleTimeUnit::kDetect;
   codec.clock_mode = options.time_source == TimeSource::kShared ? time::ClockMode::kShared : time::ClockMode::kReceive;
   return codec;
 }

@@ -54,7 +54,8 @@ Eigen::Vector3d Scaled(const std::array<std::int16_t, 3>& axes, double lsb) {
 
 }  // namespace
 
-XsensCodec::XsensCodec(const XsensOptions& options) : tick_ns_(ClockFor(options).tick_ns), clock_(ClockFor(options)) {
+XsensCodec::XsensCodec(const XsensOptions& options)
+    : options_(options), tick_ns_(ClockFor(options).tick_ns), clock_(ClockFor(options)) {
   group_.done = true;  // until a SampleTime opens one
 }
 
@@ -126,7 +127,29 @@ Status XsensCodec::Store(const CanFrame& frame) {
   return Status::kOutOfRange;
 }
 
+// One more complete group; true once the unit is known.
+bool XsensCodec::DetectUnit() {
+  if (options_.sample_time_unit != SampleTimeUnit::kDetect) return true;
+  const std::uint32_t ticks = group_.sample_time_ticks - detect_ticks_;
+  const bool successor = static_cast<std::uint16_t>(group_.counter - detect_counter_) == 1;
+  detect_ticks_ = group_.sample_time_ticks;
+  detect_counter_ = group_.counter;
+  const bool speaks_for_1us = ticks > kMost100usTicks;
+  agreeing_ = successor && (agreeing_ == 0 || speaks_for_1us == spoke_for_1us_) ? agreeing_ + 1 : 0;
+  spoke_for_1us_ = speaks_for_1us;
+  if (agreeing_ < kDetectGroups) return false;
+  options_.sample_time_unit = speaks_for_1us ? SampleTimeUnit::k1us : SampleTimeUnit::k100us;
+  tick_ns_ = ClockFor(options_).tick_ns;
+  clock_ = time::SensorClock(ClockFor(options_));
+  return true;
+}
+
 Status XsensCodec::Finish(sensor::ImuSample* sample) {
+  if (!DetectUnit()) {
+    group_.done = true;
+    ++counters_.undecided;
+    return Status::kNotReady;
+  }
   const XsensContinuity::Verdict verdict = continuity_.Judge(group_, tick_ns_);
   if (verdict == XsensContinuity::Verdict::kTorn) {
     Tear();

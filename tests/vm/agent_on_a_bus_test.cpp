@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "drivers/bus/udpm_bus.hpp"
+#include "drivers/can/xsens_codec.hpp"
 #include "drivers/messages/channel.hpp"
 #include "drivers/messages/codec.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -132,7 +133,10 @@ class AgentOnABus : public testing::Test {
     const std::array<std::uint8_t, 8> data{};
     for (int i = 0; i < n; ++i) error_frames_ += bus_.Send(CAN_ERR_FLAG | CAN_ERR_PROT, data) ? 1 : 0;
   }
-  [[nodiscard]] std::int64_t Lost() const { return imu_.samples() - health_.imu_samples; }
+  // The first groups only tell the agent the unit of SampleTime.
+  [[nodiscard]] std::int64_t Lost() const {
+    return imu_.samples() - can::XsensCodec::kDetectGroups - health_.imu_samples;
+  }
 
   mapweldlcm::health_t health_{};
   Bus bus_;

@@ -49,6 +49,43 @@ TEST(XsensCodec, ReadsSampleTimeInMicrosecondsWhenToldSo) {
   EXPECT_EQ(sample.t.ns, 12'345'000);
 }
 
+TEST(XsensCodec, TellsTheUnitOfSampleTimeFromItsSteps) {
+  for (const int hz : {5, 10, 100, 200, 400}) {
+    for (const std::uint32_t ticks_per_s : {10'000U, 1'000'000U}) {
+      XsensCodec codec({.sample_time_unit = SampleTimeUnit::kDetect});
+      sensor::ImuSample sample;
+      const std::uint32_t step = ticks_per_s / static_cast<std::uint32_t>(hz);
+      int samples = 0;
+      TimeNs last;
+      for (std::uint32_t k = 0; k < 20; ++k) {
+        const int got =
+            PushAll(&codec, Group({.ticks = 0xFFFFFF00U + step * k, .counter = static_cast<std::uint16_t>(65'530 + k)}),
+                    &sample);
+        if (samples > 0) {
+          ASSERT_EQ((sample.t - last).ns, 1'000'000'000 / hz) << hz << " Hz in " << ticks_per_s;
+        }
+        samples += got;
+        last = sample.t;
+      }
+      EXPECT_EQ(samples, 20 - XsensCodec::kDetectGroups);
+      EXPECT_EQ(codec.counters().undecided, static_cast<std::uint64_t>(XsensCodec::kDetectGroups));
+      EXPECT_EQ(codec.Rejected(), 0U);
+    }
+  }
+}
+
+TEST(XsensCodec, DecidesTheUnitOnlyOnGroupsThatFollowEachOther) {
+  XsensCodec codec({.sample_time_unit = SampleTimeUnit::kDetect});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 60; ++k) {  // at first every 8th group is lost, and two steps of 1250 are 2500
+    if (k % 8 == 7 && k < 40) continue;
+    samples += PushAll(&codec, Group({.ticks = 1250 * k, .counter = static_cast<std::uint16_t>(k)}), &sample);
+  }
+  ASSERT_GT(samples, 0);
+  EXPECT_EQ(sample.t.ns, 59LL * 1250 * 100'000);
+}
+
 TEST(XsensCodec, AcceptsAnyOrderAfterSampleTime) {
   std::array<int, 4> order{1, 2, 3, 4};
   do {
