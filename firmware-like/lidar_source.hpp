@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "drivers/lidar/hesai_xt32_codec.hpp"
 #include "drivers/lidar/ouster_codec.hpp"

@@ -27,7 +27,7 @@ struct Datagram {
 class UdpPort {
  public:
   static constexpr std::size_t kBatch = 16;
-  // Longer datagrams are dropped and counted; the longest of a sensor are 32 864 bytes (128 beams, dual return).
+  // Longer datagrams are dropped and counted; the longest of a sensor are just as long (128 beams, two returns).
   static constexpr std::size_t kMaxPayloadBytes = 33'024;
   static constexpr int kReceiveBufferBytes = 4 << 20;  // about 2 s of a VLP-16 in dual return mode
 
