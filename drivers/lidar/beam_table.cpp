@@ -37,7 +37,8 @@ bool FindKey(std::string_view json, std::string_view key, std::string_view* rest
   for (std::size_t at = json.find(key); at != std::string_view::npos; at = json.find(key, at + 1)) {
     const std::size_t end = at + key.size();
     if (at == 0 || json[at - 1] != '"' || end >= json.size() || json[end] != '"') continue;
-    *rest = json.substr(end + 1);
+    *rest = json;
+    rest->remove_prefix(end + 1);
     if (TakeLiteral(rest, ":")) return true;
   }
   return false;
