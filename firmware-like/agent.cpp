@@ -17,19 +17,11 @@
 #include "firmware-like/heap_seal.hpp"
 
 namespace mapweld::executive {
-namespace {
-
-time::ClockMode ModeOfClock(const Options& options) {
-  return options.time_source == TimeSource::kShared ? time::ClockMode::kShared : time::ClockMode::kReceive;
-}
-
-}  // namespace
-
 Agent::Agent(const Options& options, std::int32_t epoch)
     : options_(options),
       telemetry_({static_cast<std::int16_t>(options.agent_id), epoch}, &bus_),
       answers_(options.answer_bytes_per_s, &spool_, &telemetry_),
-      lidar_codec_(ModeOfClock(options)),
+      lidar_(options),
       imu_(options),
       pipeline_(options.agent, this) {}
 
@@ -57,11 +49,22 @@ bool Agent::Boot(std::span<char> message) {
         "'ip route add 224.0.0.0/4 dev lo'",
         options_.lcm_url, std::strerror(errno));
   }
-  const Status lidar = lidar_port_.Open(options_.lidar_port);
+  if (const Status status = lidar_.LoadCalibration(options_); status != Status::kOk) {
+    return fail("cannot use the LiDAR calibration %s: %s", options_.lidar_calibration_path,
+                status == Status::kIo ? std::strerror(errno) : "it is not the file of this model; see --lidar");
+  }
+  const Status lidar = lidar_.Open(options_);
   if (lidar != Status::kOk) {
     return fail("cannot listen for the LiDAR on UDP port %d: %s; stop the other program or give another --lidar-port",
                 static_cast<int>(options_.lidar_port),
                 lidar == Status::kFull ? "another program has it" : std::strerror(errno));
+  }
+  if (const Status status = imu_.LoadDescription(options_); status != Status::kOk) {
+    const char* why = status == Status::kIo ? std::strerror(errno)
+                      : status == Status::kEmpty
+                          ? "a signal of --imu-signals is not in it, or more than once"
+                          : "a signal of --imu-signals is not described as docs/wire.md says, or has an unknown unit";
+    return fail("cannot use the IMU description %s: %s", options_.imu_dbc_path, why);
   }
   if (imu_.Open(options_) != Status::kOk) {
     if (options_.candump_path != nullptr) {
@@ -90,7 +93,7 @@ bool Agent::OpenLoop() {
   if (sigprocmask(SIG_BLOCK, &signals, nullptr) != 0) return false;
   signal_fd_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
   epoll_fd_ = epoll_create1(EPOLL_CLOEXEC);
-  return signal_fd_ >= 0 && epoll_fd_ >= 0 && Watch(signal_fd_) && Watch(bus_.fd()) && Watch(lidar_port_.fd()) &&
+  return signal_fd_ >= 0 && epoll_fd_ >= 0 && Watch(signal_fd_) && Watch(bus_.fd()) && Watch(lidar_.fd()) &&
          (imu_.poll_fd() < 0 || Watch(imu_.poll_fd()));
 }
 
@@ -120,7 +123,7 @@ void Agent::PollOnce(int timeout_ms) {
   for (int i = 0; i < n; ++i) {
     const int fd = events[static_cast<std::size_t>(i)].data.fd;
     if (fd == signal_fd_) stop_ = true;
-    if (fd == lidar_port_.fd()) TakeLidar();
+    if (fd == lidar_.fd()) TakeLidar();
     if (fd == imu_.poll_fd()) imu_.Drain(&pipeline_);
     if (fd == bus_.fd()) TakeBus();
   }
@@ -128,15 +131,15 @@ void Agent::PollOnce(int timeout_ms) {
 
 void Agent::TakeLidar() {
   std::span<const lidar::Datagram> datagrams;
-  if (lidar_port_.Receive(&datagrams) != Status::kOk) return;
+  if (lidar_.Receive(&datagrams) != Status::kOk) return;
   for (const lidar::Datagram& datagram : datagrams) TakePacket(datagram);
 }
 
 void Agent::TakePacket(const lidar::Datagram& datagram) {
   if (mode_ == Mode::kEnded) return;
   if (!imu_.has_sample()) imu_.ReadUntil({INT64_MIN}, &pipeline_);
-  if (imu_.has_sample()) lidar_codec_.clock().Anchor(imu_.newest());
-  if (lidar_codec_.Decode(datagram.payload, datagram.receive, &packet_) != Status::kOk) return;
+  if (imu_.has_sample()) lidar_.clock().Anchor(imu_.newest());
+  if (lidar_.Decode(datagram, &packet_) != Status::kOk) return;
   imu_.ReadUntil(packet_.t, &pipeline_);
 
   const TimeNs begin = time::MonotonicNow();
@@ -232,12 +235,12 @@ void Agent::PublishHealth() {
   health.t_ns = std::max<std::int64_t>(sensor_time_.ns, 0);
   health.mode = static_cast<std::int8_t>(mode_);
   health.heap_calls = HeapCallsAfterSeal();
-  health.lidar_packets = count(lidar_codec_.counters().packets);
-  health.lidar_rejected = count(lidar_codec_.Rejected() + lidar_port_.counters().too_long);
+  health.lidar_packets = count(lidar_.packets());
+  health.lidar_rejected = count(lidar_.rejected());
   health.can_frames = count(imu_.frames());
   health.imu_samples = count(imu_.samples());
   health.imu_rejected = count(imu_.rejected());
-  health.kernel_drops = count(lidar_port_.counters().kernel_drops + imu_.kernel_drops() + bus_.counters().kernel_drops);
+  health.kernel_drops = count(lidar_.kernel_drops() + imu_.kernel_drops() + bus_.counters().kernel_drops);
   health.scans = count(counters.scans);
   health.scans_dropped = count(counters.scans_dropped);
   health.keyframes = static_cast<std::int32_t>(counters.keyframes);

@@ -10,11 +10,10 @@
 #include "core/pipeline/agent_pipeline.hpp"
 #include "core/sensor/lidar_packet.hpp"
 #include "drivers/bus/udpm_bus.hpp"
-#include "drivers/lidar/udp_port.hpp"
-#include "drivers/lidar/vlp16_codec.hpp"
 #include "drivers/spool/record_spool.hpp"
 #include "firmware-like/answer_queue.hpp"
 #include "firmware-like/imu_source.hpp"
+#include "firmware-like/lidar_source.hpp"
 #include "firmware-like/options.hpp"
 #include "firmware-like/rate_group.hpp"
 #include "firmware-like/telemetry.hpp"
@@ -67,8 +66,7 @@ class Agent final : private pipeline::AgentSink {
   AnswerQueue answers_;
   Watchdog watchdog_;
 
-  lidar::UdpPort lidar_port_;
-  lidar::Vlp16Codec lidar_codec_;
+  LidarSource lidar_;
   sensor::LidarPacket packet_;
   ImuSource imu_;
   pipeline::AgentPipeline pipeline_;

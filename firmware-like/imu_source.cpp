@@ -1,30 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-like/imu_source.hpp"
 
+#include "drivers/can/xsens_table.hpp"
+#include "firmware-like/read_file.hpp"
+
 namespace mapweld::executive {
 namespace {
 
 can::XsensOptions CodecOptions(const Options& options) {
   can::XsensOptions codec;
+  codec.sample_time_unit = can::SampleTimeUnit::kDetect;
   codec.clock_mode = options.time_source == TimeSource::kShared ? time::ClockMode::kShared : time::ClockMode::kReceive;
   return codec;
 }
 
-// SampleTime, GroupCounter, StatusWord, RateOfTurn, Acceleration: the rest of the bus is not ours.
-constexpr std::uint16_t kWantedIds[] = {0x005, 0x006, 0x011, 0x032, 0x034};
-
 }  // namespace
 
 ImuSource::ImuSource(const Options& options)
-    : replayed_(options.candump_path != nullptr), codec_(CodecOptions(options)) {}
+    : replayed_(options.candump_path != nullptr),
+      described_(options.imu_dbc_path != nullptr),
+      xsens_(CodecOptions(options)) {}
+
+Status ImuSource::LoadDescription(const Options& options) {
+  if (!described_) return Status::kOk;
+  std::array<char, kMaxSetupFileBytes> text;
+  std::size_t bytes = 0;
+  if (const Status status = ReadFile(options.imu_dbc_path, text, &bytes); status != Status::kOk) return status;
+  return dbc_.Configure({text.data(), bytes}, options.imu_signals);
+}
 
 Status ImuSource::Open(const Options& options) {
-  return replayed_ ? log_.Open(options.candump_path) : socket_.Open(options.can_interface, kWantedIds);
+  if (replayed_) return log_.Open(options.candump_path);
+  return socket_.Open(options.can_interface, described_ ? dbc_.wanted_ids() : std::span(can::kXsensWantedIds));
 }
 
 void ImuSource::Push(const can::CanFrame& frame, pipeline::AgentPipeline* pipeline) {
   sensor::ImuSample sample;
-  if (codec_.Push(frame, &sample) != Status::kOk) return;
+  const Status status = described_ ? dbc_.Push(frame, &sample) : xsens_.Push(frame, &sample);
+  if (status != Status::kOk) return;
   has_sample_ = true;
   newest_ = sample.t;
   pipeline->OnImu(sample);

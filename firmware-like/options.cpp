@@ -20,7 +20,11 @@ const char kHelpText[] =
     "  --state-dir DIR       keeps the boot count and the spool of unsent submaps\n"
     "  --can IFACE           SocketCAN interface with the IMU, for example can0\n"
     "  --candump FILE        read the IMU's frames from a `candump -L` log instead\n"
-    "  --lidar-port PORT     UDP port of the VLP-16's data packets (2368)\n"
+    "  --imu-dbc FILE        the IMU is not an Xsens MTi but described by this CAN database\n"
+    "  --imu-signals NAMES   its turn rates x,y,z and accelerations x,y,z: six signal names, separated by commas\n"
+    "  --lidar MODEL         vlp16, hdl32e, vlp32c, xt32 or os1 (vlp16)\n"
+    "  --lidar-calibration FILE  os1: the sensor's metadata (JSON); xt32: its angle correction file (nominal angles)\n"
+    "  --lidar-port PORT     UDP port of the LiDAR's data packets (2368; os1: 7502)\n"
     "  --lcm-url URL         LCM network (environment LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)\n"
     "  --time shared|receive clocks of LiDAR and IMU are synchronised, or run free (shared)\n"
     "  --lidar-at X,Y,Z,ROLL,PITCH,YAW  body_T_lidar, metres and degrees (0.10,0,0.35,0,0,0)\n"
@@ -58,11 +62,52 @@ bool ParsePose(const char* text, geom::Pose3* pose) {
   return true;
 }
 
+bool ParseLidarModel(const char* text, LidarModel* model) {
+  constexpr struct {
+    const char* name;
+    LidarModel model;
+  } kModels[] = {{"vlp16", LidarModel::kVlp16},
+                 {"hdl32e", LidarModel::kHdl32e},
+                 {"vlp32c", LidarModel::kVlp32c},
+                 {"xt32", LidarModel::kXt32},
+                 {"os1", LidarModel::kOs1}};
+  for (const auto& known : kModels) {
+    if (std::strcmp(text, known.name) != 0) continue;
+    *model = known.model;
+    return true;
+  }
+  return false;
+}
+
+std::uint16_t DefaultPort(LidarModel model) {
+  return model == LidarModel::kOs1 ? 7502 : 2368;
+}
+
+// Which models read a calibration file, and which cannot do without.
+const char* LidarCalibrationProblem(const Options& options) {
+  const bool given = options.lidar_calibration_path != nullptr;
+  if (options.lidar_model == LidarModel::kOs1) {
+    return given ? nullptr : "--lidar os1 needs --lidar-calibration, the sensor's metadata";
+  }
+  return given && options.lidar_model != LidarModel::kXt32 ? "--lidar-calibration is for os1 and xt32 only" : nullptr;
+}
+
+const char* ImuDescriptionProblem(const Options& options) {
+  if ((options.imu_dbc_path == nullptr) != (options.imu_signals == nullptr))
+    return "--imu-dbc and --imu-signals go together";
+  const bool clockless = options.imu_dbc_path != nullptr && options.time_source == TimeSource::kShared;
+  return clockless ? "--imu-dbc needs --time receive: such an IMU has no clock of its own" : nullptr;
+}
+
 enum OptionId : int {
   kAgentId = 1000,
   kStateDir,
   kCan,
   kCandump,
+  kImuDbc,
+  kImuSignals,
+  kLidar,
+  kLidarCalibration,
   kLidarPort,
   kLcmUrl,
   kTime,
@@ -79,6 +124,10 @@ constexpr option kOptions[] = {
     {"state-dir", required_argument, nullptr, kStateDir},
     {"can", required_argument, nullptr, kCan},
     {"candump", required_argument, nullptr, kCandump},
+    {"imu-dbc", required_argument, nullptr, kImuDbc},
+    {"imu-signals", required_argument, nullptr, kImuSignals},
+    {"lidar", required_argument, nullptr, kLidar},
+    {"lidar-calibration", required_argument, nullptr, kLidarCalibration},
     {"lidar-port", required_argument, nullptr, kLidarPort},
     {"lcm-url", required_argument, nullptr, kLcmUrl},
     {"time", required_argument, nullptr, kTime},
@@ -107,6 +156,17 @@ bool Apply(int id, const char* value, Options* options) {
       return true;
     case kCandump:
       options->candump_path = value;
+      return true;
+    case kImuDbc:
+      options->imu_dbc_path = value;
+      return true;
+    case kImuSignals:
+      options->imu_signals = value;
+      return true;
+    case kLidar:
+      return ParseLidarModel(value, &options->lidar_model);
+    case kLidarCalibration:
+      options->lidar_calibration_path = value;
       return true;
     case kLidarPort:
       if (!ParseNumber(value, 1, 65535, &number)) return false;
@@ -170,6 +230,13 @@ ParsedOptions ParseOptions(int argc, char** argv) {
   if ((parsed.options.can_interface == nullptr) == (parsed.options.candump_path == nullptr)) {
     return fail("%s: give one of them, the IMU's frames must come from somewhere (see --help)", "--can, --candump");
   }
+  if (const char* problem = LidarCalibrationProblem(parsed.options); problem != nullptr) {
+    return fail("%s (see --help)", problem);
+  }
+  if (const char* problem = ImuDescriptionProblem(parsed.options); problem != nullptr) {
+    return fail("%s (see --help)", problem);
+  }
+  if (parsed.options.lidar_port == 0) parsed.options.lidar_port = DefaultPort(parsed.options.lidar_model);
   parsed.outcome = ParseOutcome::kRun;
   return parsed;
 }

@@ -15,11 +15,17 @@ enum class TimeSource : std::uint8_t {
   kReceive,  // free running: mapped to the receive clock by an estimator
 };
 
+enum class LidarModel : std::uint8_t { kVlp16, kHdl32e, kVlp32c, kXt32, kOs1 };
+
 struct Options {
   int agent_id = 0;
   const char* can_interface = nullptr;  // one of these two
   const char* candump_path = nullptr;
-  std::uint16_t lidar_port = 2368;
+  const char* imu_dbc_path = nullptr;  // null: an Xsens MTi
+  const char* imu_signals = nullptr;   // with imu_dbc_path: six names, see DbcImuCodec
+  LidarModel lidar_model = LidarModel::kVlp16;
+  const char* lidar_calibration_path = nullptr;  // needed by kOs1, possible with kXt32
+  std::uint16_t lidar_port = 0;                  // 0 until parsed: the model's own
   const char* lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   const char* state_dir = nullptr;  // boot epoch and spool
   std::int64_t spool_bytes = 256LL << 20;

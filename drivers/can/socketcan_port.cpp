@@ -27,15 +27,16 @@ CanFrame FromKernel(const can_frame& raw) {
 
 }  // namespace
 
-Status SocketCanPort::SetFilters(std::span<const std::uint16_t> wanted_ids) {
+Status SocketCanPort::SetFilters(std::span<const std::uint32_t> wanted_ids) {
   if (wanted_ids.size() > kMaxFilters) return Status::kOutOfRange;
   const can_err_mask_t errors = CAN_ERR_MASK;
   if (::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) != 0) return Status::kIo;
   if (wanted_ids.empty()) return Status::kOk;
   std::array<can_filter, kMaxFilters> filters{};
   for (std::size_t i = 0; i < wanted_ids.size(); ++i) {
-    // The flag bits in the mask keep extended and remote frames with the same number out.
-    filters[i] = {.can_id = wanted_ids[i], .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
+    // The flag bits in the mask keep remote frames, and frames of the other length of identifier, out.
+    const canid_t bits = (wanted_ids[i] & CAN_EFF_FLAG) != 0 ? CAN_EFF_MASK : CAN_SFF_MASK;
+    filters[i] = {.can_id = wanted_ids[i], .can_mask = bits | CAN_EFF_FLAG | CAN_RTR_FLAG};
   }
   const auto bytes = static_cast<socklen_t>(wanted_ids.size() * sizeof(can_filter));
   return ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), bytes) == 0 ? Status::kOk : Status::kIo;
@@ -50,7 +51,7 @@ Status SocketCanPort::Bind(const char* interface) {
   return ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ? Status::kOk : Status::kIo;
 }
 
-Status SocketCanPort::Open(const char* interface, std::span<const std::uint16_t> wanted_ids) {
+Status SocketCanPort::Open(const char* interface, std::span<const std::uint32_t> wanted_ids) {
   Close();
   if (std::strlen(interface) >= IFNAMSIZ) return Status::kOutOfRange;
   fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);

@@ -36,9 +36,10 @@ class SocketCanPort final : public CanPort {
   SocketCanPort() = default;
   ~SocketCanPort() { Close(); }
 
-  // Opens `interface` ("can0") for these 11-bit identifiers only; none: everything. kIo with errno when the kernel has
-  // no CAN, no such interface or refuses; kOutOfRange for a name that is too long or more than kMaxFilters ids.
-  Status Open(const char* interface, std::span<const std::uint16_t> wanted_ids);
+  // Opens `interface` ("can0") for these identifiers only, 29-bit ones with CAN_EFF_FLAG; none: everything. kIo with
+  // errno when the kernel has no CAN, no such interface or refuses; kOutOfRange for a name that is too long or more
+  // than kMaxFilters ids.
+  Status Open(const char* interface, std::span<const std::uint32_t> wanted_ids);
 
   // Takes over an open descriptor whose datagrams are struct can_frame (a socketpair in tests). Made non-blocking.
   Status Adopt(int fd);
@@ -51,7 +52,7 @@ class SocketCanPort final : public CanPort {
 
  private:
   Status Bind(const char* interface);
-  Status SetFilters(std::span<const std::uint16_t> wanted_ids);
+  Status SetFilters(std::span<const std::uint32_t> wanted_ids);
   void CountErrorFrame(std::uint32_t error_class);
 
   int fd_ = -1;

@@ -54,7 +54,8 @@ Eigen::Vector3d Scaled(const std::array<std::int16_t, 3>& axes, double lsb) {
 
 }  // namespace
 
-XsensCodec::XsensCodec(const XsensOptions& options) : tick_ns_(ClockFor(options).tick_ns), clock_(ClockFor(options)) {
+XsensCodec::XsensCodec(const XsensOptions& options)
+    : options_(options), tick_ns_(ClockFor(options).tick_ns), clock_(ClockFor(options)) {
   group_.done = true;  // until a SampleTime opens one
 }
 
@@ -88,8 +89,9 @@ Status XsensCodec::Check(const CanFrame& frame) {
 }
 
 void XsensCodec::Tear() {
-  if (!group_.done) ++counters_.torn_groups;
+  if (!group_.done || held_) ++counters_.torn_groups;
   group_.done = true;
+  held_ = false;
 }
 
 Status XsensCodec::Store(const CanFrame& frame) {
@@ -125,12 +127,48 @@ Status XsensCodec::Store(const CanFrame& frame) {
   return Status::kOutOfRange;
 }
 
+// One more complete group; true once the unit is known.
+bool XsensCodec::DetectUnit() {
+  if (options_.sample_time_unit != SampleTimeUnit::kDetect) return true;
+  const std::uint32_t ticks = group_.sample_time_ticks - detect_ticks_;
+  const bool successor = static_cast<std::uint16_t>(group_.counter - detect_counter_) == 1;
+  detect_ticks_ = group_.sample_time_ticks;
+  detect_counter_ = group_.counter;
+  const bool speaks_for_1us = ticks > kMost100usTicks;
+  agreeing_ = successor && (agreeing_ == 0 || speaks_for_1us == spoke_for_1us_) ? agreeing_ + 1 : 0;
+  spoke_for_1us_ = speaks_for_1us;
+  if (agreeing_ < kDetectGroups) return false;
+  options_.sample_time_unit = speaks_for_1us ? SampleTimeUnit::k1us : SampleTimeUnit::k100us;
+  tick_ns_ = ClockFor(options_).tick_ns;
+  clock_ = time::SensorClock(ClockFor(options_));
+  return true;
+}
+
 Status XsensCodec::Finish(sensor::ImuSample* sample) {
-  if (!continuity_.Accept(group_, tick_ns_)) {
+  if (!DetectUnit()) {
+    group_.done = true;
+    ++counters_.undecided;
+    return Status::kNotReady;
+  }
+  const XsensContinuity::Verdict verdict = continuity_.Judge(group_, tick_ns_);
+  if (verdict == XsensContinuity::Verdict::kTorn) {
     Tear();
     return Status::kBadInput;
   }
   group_.done = true;
+  held_ = verdict == XsensContinuity::Verdict::kLate;
+  return held_ ? Status::kNotReady : Emit(sample);
+}
+
+// `frame`: the SampleTime of the next group.
+Status XsensCodec::ReleaseHeld(const CanFrame& frame, sensor::ImuSample* sample) {
+  const auto ticks = ByteReader(std::span(frame.data).first(frame.dlc)).Big<std::uint32_t>();
+  if (!held_ || !continuity_.FollowsDirectly(ticks)) return Status::kNotReady;  // Store tears what is held
+  held_ = false;
+  return Emit(sample);
+}
+
+Status XsensCodec::Emit(sensor::ImuSample* sample) {
   TimeNs t;
   const Status status = clock_.ToTime(group_.sample_time_ticks, group_.first_receive, &t);
   if (status != Status::kOk || (emitted_ && t <= last_t_)) {
@@ -152,8 +190,10 @@ Status XsensCodec::Push(const CanFrame& frame, sensor::ImuSample* sample) {
   ++counters_.frames;
   if (frame.gap) Tear();
   if (const Status status = Check(frame); status != Status::kOk) return status;
+  Status released = Status::kNotReady;
+  if (FindXsensMessage(frame.id)->field == XsensField::kSampleTime) released = ReleaseHeld(frame, sample);
   if (const Status status = Store(frame); status != Status::kOk) return status;
-  if ((group_.parts & XsensGroup::kNeeded) != XsensGroup::kNeeded) return Status::kNotReady;
+  if ((group_.parts & XsensGroup::kNeeded) != XsensGroup::kNeeded) return released;
   return Finish(sample);
 }
 

@@ -14,8 +14,11 @@
 
 namespace mapweld::can {
 
-// The vendor's pages say 100 us, the 2019 manual and the DBC file 1 us; it depends on the firmware.
-enum class SampleTimeUnit : std::uint8_t { k100us, k1us };
+// The vendor's pages say 100 us, the 2019 manual and the DBC file 1 us; it depends on the firmware. kDetect tells them
+// apart by the ticks from one group to the next: an MTi sends at most 400 groups per second and odometry needs at least
+// 5, which are 25 to 2000 ticks of 100 us or 2500 to 200 000 of 1 us. No clock is asked, so a replay at any speed gives
+// the same answer.
+enum class SampleTimeUnit : std::uint8_t { k100us, k1us, kDetect };
 
 struct XsensOptions {
   SampleTimeUnit sample_time_unit = SampleTimeUnit::k100us;
@@ -27,12 +30,15 @@ class XsensCodec {
   // The sensor measures 2000 deg/s and 10 g; what lies outside is a fault, not a motion.
   static constexpr double kMaxGyroRadS = 35.0;
   static constexpr double kMaxAccelMs2 = 100.0;
+  static constexpr int kDetectGroups = 8;                 // that agree, one after the other
+  static constexpr std::uint32_t kMost100usTicks = 2200;  // per group
 
   struct Counters {
     std::uint64_t frames = 0;
     std::uint64_t samples = 0;
-    std::uint64_t clipped = 0;  // samples, delivered and marked
-    std::uint64_t unused = 0;   // known messages that odometry does not need
+    std::uint64_t clipped = 0;    // samples, delivered and marked
+    std::uint64_t undecided = 0;  // samples before the unit was known
+    std::uint64_t unused = 0;     // known messages that odometry does not need
     // refused frames
     std::uint64_t error_frames = 0;
     std::uint64_t remote = 0;
@@ -48,8 +54,9 @@ class XsensCodec {
 
   explicit XsensCodec(const XsensOptions& options);
 
-  // kOk: *sample is a new sample. kNotReady: the frame was used, the sample is not complete. kEmpty: a known message
-  // that is not needed. Everything else is a refusal, counted by cause; *sample is then unchanged.
+  // kOk: *sample is a new sample; of a group that the bus delayed it comes with the SampleTime of the next. kNotReady:
+  // the frame was used, the sample is not complete. kEmpty: a known message that is not needed. Everything else is a
+  // refusal, counted by cause; *sample is then unchanged.
   Status Push(const CanFrame& frame, sensor::ImuSample* sample);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -62,12 +69,21 @@ class XsensCodec {
   Status Check(const CanFrame& frame);
   Status Store(const CanFrame& frame);
   Status Finish(sensor::ImuSample* sample);
+  Status Emit(sensor::ImuSample* sample);
+  Status ReleaseHeld(const CanFrame& frame, sensor::ImuSample* sample);
   void Tear();
+  bool DetectUnit();
 
+  XsensOptions options_;
   std::int64_t tick_ns_;
   time::SensorClock clock_;
   XsensGroup group_;
   XsensContinuity continuity_;
+  int agreeing_ = 0;  // groups since the last that spoke for the other unit
+  bool spoke_for_1us_ = false;
+  std::uint32_t detect_ticks_ = 0;
+  std::uint16_t detect_counter_ = 0;
+  bool held_ = false;  // group_ is complete but late: see XsensContinuity
   bool emitted_ = false;
   TimeNs last_t_;
   Counters counters_;

@@ -4,9 +4,11 @@
 // order. A group is torn, and dropped, when
 //   - a message comes twice before the group is complete,
 //   - the port reports that frames were lost inside it,
-//   - its frames span more than one sample period by their kernel stamps,
-//   - SampleTime and GroupCounter do not advance by the same number of periods.
-// The last check learns the period; kRelearnAfter contradictions in a row make it start afresh (a restarted sensor).
+//   - SampleTime and GroupCounter do not advance by the same number of periods,
+//   - its frames span more than one sample period by their kernel stamps, and the next SampleTime is not the next one.
+// The last rule tells a group that a busy bus delayed from one that took its end from the group after it: the latter
+// swallowed a SampleTime. The checks learn the period; kRelearnAfter contradictions in a row make it start afresh (a
+// restarted sensor).
 #pragma once
 
 #include <array>
@@ -36,11 +38,20 @@ class XsensContinuity {
  public:
   static constexpr int kRelearnAfter = 8;
 
-  // Whether a complete group can follow the ones before it; remembers it if so. tick_ns: unit of SampleTime.
-  bool Accept(const XsensGroup& group, std::int64_t tick_ns);
+  enum class Verdict : std::uint8_t {
+    kGood,
+    kTorn,
+    kLate,  // good if the next SampleTime FollowsDirectly
+  };
+  // Whether a complete group can follow the ones before it; remembers it unless it is torn. tick_ns: unit of
+  // SampleTime.
+  Verdict Judge(const XsensGroup& group, std::int64_t tick_ns);
+
+  // Whether this SampleTime belongs to the group right after the last one remembered.
+  [[nodiscard]] bool FollowsDirectly(std::uint32_t sample_time_ticks) const;
 
  private:
-  bool Consistent(const XsensGroup& group, std::int64_t tick_ns);
+  bool Consistent(const XsensGroup& group);
 
   bool started_ = false;
   std::uint32_t last_ticks_ = 0;

@@ -55,7 +55,7 @@ inline constexpr std::array kXsensMessages{
 static_assert(std::ranges::is_sorted(kXsensMessages, {}, &XsensMessage::id));
 
 // For the kernel's filter: what the codec makes use of.
-inline constexpr std::array<std::uint16_t, 5> kXsensWantedIds{0x005, 0x006, 0x011, 0x032, 0x034};
+inline constexpr std::array<std::uint32_t, 5> kXsensWantedIds{0x005, 0x006, 0x011, 0x032, 0x034};
 
 // StatusWord: clipping of the accelerometer and gyroscope axes. Bits 14 to 16 tell of the magnetometer, which is not
 // used.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Receives datagrams on one UDP port, in batches, with the kernel's receive stamps and its count of losses.
-// Owns 32 datagrams of at most 2 KiB, about 70 KiB. No heap.
+// Owns 16 datagrams of at most 32 KiB, 0.5 MiB. No heap.
 #pragma once
 
 #include <netinet/in.h>
@@ -26,9 +26,10 @@ struct Datagram {
 
 class UdpPort {
  public:
-  static constexpr std::size_t kBatch = 32;
-  static constexpr std::size_t kMaxPayloadBytes = 2048;  // longer datagrams are dropped and counted
-  static constexpr int kReceiveBufferBytes = 4 << 20;    // about 2 s of a VLP-16 in dual return mode
+  static constexpr std::size_t kBatch = 16;
+  // Longer datagrams are dropped and counted; the longest of a sensor are just as long (128 beams, two returns).
+  static constexpr std::size_t kMaxPayloadBytes = 33'024;
+  static constexpr int kReceiveBufferBytes = 4 << 20;  // about 2 s of a VLP-16 in dual return mode
 
   struct Counters {
     std::uint64_t datagrams = 0;  // delivered

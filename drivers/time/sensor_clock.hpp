@@ -25,7 +25,7 @@ struct SensorClockOptions {
   std::uint64_t wrap_ticks = 3'600'000'000;  // the counter runs 0 .. wrap_ticks - 1
 };
 
-inline constexpr SensorClockOptions kVlp16Clock{ClockMode::kShared, 1000, 3'600'000'000};
+inline constexpr SensorClockOptions kLidarHourClock{ClockMode::kShared, 1000, 3'600'000'000};
 inline constexpr SensorClockOptions kXsens100usClock{ClockMode::kShared, 100'000, 1ULL << 32U};
 inline constexpr SensorClockOptions kXsens1usClock{ClockMode::kShared, 1000, 1ULL << 32U};
 

@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace mapweld;
   fuzz::Input input(data, size);
   const std::uint64_t selector = input.Number(1);
-  time::SensorClockOptions options = (selector & 1U) != 0 ? time::kXsens100usClock : time::kVlp16Clock;
+  time::SensorClockOptions options = (selector & 1U) != 0 ? time::kXsens100usClock : time::kLidarHourClock;
   options.mode = (selector & 2U) != 0 ? time::ClockMode::kReceive : time::ClockMode::kShared;
   time::SensorClock clock(options);
   if ((selector & 4U) != 0) clock.Anchor({static_cast<std::int64_t>(input.Number(6))});

@@ -35,6 +35,33 @@ TEST(Options, AcceptTheUsualCommandLine) {
   EXPECT_LT((p_body - geom::Vec3d(1, 3, 3)).norm(), 1e-12);
 }
 
+TEST(Options, KnowTheLidarModelsAndWhichNeedACalibration) {
+  const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), good.begin(), good.end());
+    return Parse(more);
+  };
+  EXPECT_EQ(with({}).options.lidar_model, LidarModel::kVlp16);
+  EXPECT_EQ(with({}).options.lidar_port, 2368);
+  EXPECT_EQ(with({"--lidar", "vlp32c"}).options.lidar_model, LidarModel::kVlp32c);
+  EXPECT_EQ(with({"--lidar", "xt32", "--lidar-calibration", "a.csv"}).outcome, ParseOutcome::kRun);
+  EXPECT_EQ(with({"--lidar", "os1", "--lidar-calibration", "a.json"}).options.lidar_port, 7502);
+  EXPECT_THAT(with({"--lidar", "os1"}).message, HasSubstr("needs --lidar-calibration"));
+  EXPECT_THAT(with({"--lidar", "vlp16", "--lidar-calibration", "a"}).message, HasSubstr("os1 and xt32 only"));
+}
+
+TEST(Options, TakeAnotherImuOnlyWithItsSignalsAndAFreeClock) {
+  const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), good.begin(), good.end());
+    return Parse(more);
+  };
+  EXPECT_EQ(with({"--imu-dbc", "a.dbc", "--imu-signals", "a,b,c,d,e,f", "--time", "receive"}).outcome,
+            ParseOutcome::kRun);
+  EXPECT_THAT(with({"--imu-dbc", "a.dbc", "--time", "receive"}).message, HasSubstr("go together"));
+  EXPECT_THAT(with({"--imu-dbc", "a.dbc", "--imu-signals", "a,b,c,d,e,f"}).message, HasSubstr("--time receive"));
+}
+
 TEST(Options, SayWhichValueIsWrong) {
   const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
   const auto with = [&](std::vector<std::string> more) {
@@ -45,6 +72,7 @@ TEST(Options, SayWhichValueIsWrong) {
                                                                                       {"--agent-id", "x"},
                                                                                       {"--agent-id", "99999"},
                                                                                       {"--lidar-port", "70000"},
+                                                                                      {"--lidar", "hdl64e"},
                                                                                       {"--time", "gps"},
                                                                                       {"--lidar-at", "1,2,3"},
                                                                                       {"--lidar-at", "1,2,3,4,5,6,7"},

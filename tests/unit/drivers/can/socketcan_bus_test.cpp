@@ -77,6 +77,19 @@ TEST_F(SocketCanBus, LetsOnlyTheWantedFramesIn) {
   }
 }
 
+TEST_F(SocketCanBus, TellsExtendedIdentifiersFromShortOnes) {
+  const std::array<std::uint32_t, 2> wanted{0x123 | CAN_EFF_FLAG, 0x18FF1234 | CAN_EFF_FLAG};
+  ASSERT_EQ(port_->Open(kInterface, wanted), Status::kOk);
+  for (const canid_t id : {0x123U, 0x123U | CAN_EFF_FLAG, 0x18FF1235U | CAN_EFF_FLAG, 0x18FF1234U | CAN_EFF_FLAG,
+                           0x123U | CAN_EFF_FLAG | CAN_RTR_FLAG}) {
+    Send(id);
+  }
+  Receive();
+  ASSERT_EQ(n_, 2U);
+  EXPECT_TRUE(out_[0].extended && out_[0].id == 0x123);
+  EXPECT_TRUE(out_[1].extended && out_[1].id == 0x18FF1234);
+}
+
 TEST_F(SocketCanBus, StampsFramesBetweenWriteAndRead) {
   bool stamped = false;
   for (int i = 0; i < 1000 && !stamped; ++i) {  // the first frames may lack a stamp

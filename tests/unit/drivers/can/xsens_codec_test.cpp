@@ -49,6 +49,43 @@ TEST(XsensCodec, ReadsSampleTimeInMicrosecondsWhenToldSo) {
   EXPECT_EQ(sample.t.ns, 12'345'000);
 }
 
+TEST(XsensCodec, TellsTheUnitOfSampleTimeFromItsSteps) {
+  for (const int hz : {5, 10, 100, 200, 400}) {
+    for (const std::uint32_t ticks_per_s : {10'000U, 1'000'000U}) {
+      XsensCodec codec({.sample_time_unit = SampleTimeUnit::kDetect});
+      sensor::ImuSample sample;
+      const std::uint32_t step = ticks_per_s / static_cast<std::uint32_t>(hz);
+      int samples = 0;
+      TimeNs last;
+      for (std::uint32_t k = 0; k < 20; ++k) {
+        const int got =
+            PushAll(&codec, Group({.ticks = 0xFFFFFF00U + step * k, .counter = static_cast<std::uint16_t>(65'530 + k)}),
+                    &sample);
+        if (samples > 0) {
+          ASSERT_EQ((sample.t - last).ns, 1'000'000'000 / hz) << hz << " Hz in " << ticks_per_s;
+        }
+        samples += got;
+        last = sample.t;
+      }
+      EXPECT_EQ(samples, 20 - XsensCodec::kDetectGroups);
+      EXPECT_EQ(codec.counters().undecided, static_cast<std::uint64_t>(XsensCodec::kDetectGroups));
+      EXPECT_EQ(codec.Rejected(), 0U);
+    }
+  }
+}
+
+TEST(XsensCodec, DecidesTheUnitOnlyOnGroupsThatFollowEachOther) {
+  XsensCodec codec({.sample_time_unit = SampleTimeUnit::kDetect});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 60; ++k) {  // at first every 8th group is lost, and two steps of 1250 are 2500
+    if (k % 8 == 7 && k < 40) continue;
+    samples += PushAll(&codec, Group({.ticks = 1250 * k, .counter = static_cast<std::uint16_t>(k)}), &sample);
+  }
+  ASSERT_GT(samples, 0);
+  EXPECT_EQ(sample.t.ns, 59LL * 1250 * 100'000);
+}
+
 TEST(XsensCodec, AcceptsAnyOrderAfterSampleTime) {
   std::array<int, 4> order{1, 2, 3, 4};
   do {
@@ -203,6 +240,41 @@ TEST(XsensCodec, SeesFromTheFramesThatTwoGroupsWereJoined) {
   }
 }
 
+TEST(XsensCodec, KeepsAGroupThatABusyBusDelayed) {
+  XsensCodec codec({});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 10; ++k) {
+    auto group = Group({.ticks = 25 * k,
+                        .counter = static_cast<std::uint16_t>(k),
+                        .gyro = {static_cast<int>(k), 0, 0},
+                        .receive_ns = 1'000'000'000 + k * 2'500'000LL});
+    // The end of group 5 comes more than a period late, right before group 6.
+    if (k == 5) group[4].receive = {group[0].receive.ns + 2'600'000};
+    const int got = PushAll(&codec, group, &sample);
+    EXPECT_EQ(got, k == 5 ? 0 : (k == 6 ? 2 : 1)) << k;
+    samples += got;
+  }
+  EXPECT_EQ(samples, 10);
+  EXPECT_EQ(codec.Rejected(), 0U);
+}
+
+TEST(XsensCodec, DropsAGroupThatTookItsEndFromTheNext) {
+  XsensCodec codec({});
+  sensor::ImuSample sample;
+  int samples = 0;
+  for (std::uint32_t k = 0; k < 10; ++k) {
+    const auto group = Group(
+        {.ticks = 25 * k, .counter = static_cast<std::uint16_t>(k), .receive_ns = 1'000'000'000 + k * 2'500'000LL});
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if ((k == 5 && i == 4) || (k == 6 && i < 4)) continue;  // lost without a trace
+      samples += codec.Push(group[i], &sample) == Status::kOk ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(samples, 8);
+  EXPECT_EQ(codec.counters().torn_groups, 1U);
+}
+
 TEST(XsensCodec, CrossesTheWrapsOfBothCounters) {
   XsensCodec codec({});
   sensor::ImuSample sample;
@@ -256,7 +328,7 @@ TEST(XsensCodec, NeverGoesBackInTime) {
 }
 
 TEST(XsensTable, HoldsEveryWantedIdentifier) {
-  for (const std::uint16_t id : kXsensWantedIds) {
+  for (const std::uint32_t id : kXsensWantedIds) {
     ASSERT_NE(FindXsensMessage(id), nullptr);
     EXPECT_NE(FindXsensMessage(id)->field, XsensField::kNone);
   }

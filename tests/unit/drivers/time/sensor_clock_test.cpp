@@ -17,7 +17,7 @@ SensorClockOptions Receive(SensorClockOptions options) {
 }
 
 TEST(SharedClock, CrossesTheHourWithoutAStep) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   constexpr std::int64_t kPacketUs = 1327;
   TimeNs last;
   for (std::int64_t us = kHourUs - 1'000'000; us < 3 * kHourUs; us += kPacketUs) {
@@ -41,7 +41,7 @@ TEST(SharedClock, CrossesTheWrapOfTheImuCounter) {
 
 TEST(SharedClock, GivesTwoSensorsWithOneReadingTheSameTime) {
   SensorClock imu(kXsens100usClock);
-  SensorClock lidar(kVlp16Clock);
+  SensorClock lidar(kLidarHourClock);
   // 5000 s after the common start the LiDAR's counter has wrapped once; the IMU tells it so.
   TimeNs imu_t;
   TimeNs lidar_t;
@@ -52,7 +52,7 @@ TEST(SharedClock, GivesTwoSensorsWithOneReadingTheSameTime) {
 }
 
 TEST(SharedClock, RefusesTicksBeyondTheWrap) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   TimeNs t{7};
   EXPECT_EQ(clock.ToTime(kHourUs, {}, &t), Status::kOutOfRange);
   EXPECT_EQ(t.ns, 7);
@@ -60,7 +60,7 @@ TEST(SharedClock, RefusesTicksBeyondTheWrap) {
 }
 
 TEST(SharedClock, KeepsTheTrueTimeOfAPacketThatCameLate) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   TimeNs t;
   ASSERT_EQ(clock.ToTime(2'000'000, {}, &t), Status::kOk);
   ASSERT_EQ(clock.ToTime(1'500'000, {}, &t), Status::kOk);
@@ -68,7 +68,7 @@ TEST(SharedClock, KeepsTheTrueTimeOfAPacketThatCameLate) {
 }
 
 TEST(SharedClock, RefusesSingleJumpsBackwardsAndGoesOn) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   TimeNs t;
   ASSERT_EQ(clock.ToTime(10'000'000, {}, &t), Status::kOk);
   for (int i = 0; i < 100; ++i) {
@@ -104,7 +104,7 @@ TEST(SharedClock, BelievesARestartedSensorAfterConsistentReadings) {
 }
 
 TEST(SharedClock, FindsTheRightTurnAfterALongSilence) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   TimeNs t;
   ASSERT_EQ(clock.ToTime(1'000'000, {0}, &t), Status::kOk);
   // 50 minutes without a packet look like 10 minutes backwards.
@@ -140,7 +140,7 @@ class FreeRunningClock : public testing::TestWithParam<double> {};
 
 TEST_P(FreeRunningClock, StaysWithinAMillisecondAndNeverStepsBack) {
   Stream stream{.drift_ppm = GetParam()};
-  SensorClock clock(Receive(kVlp16Clock));
+  SensorClock clock(Receive(kLidarHourClock));
   TimeNs last;
   double worst_ms = 0;
   constexpr std::int64_t kPeriodNs = 1'327'104;
@@ -160,7 +160,7 @@ TEST_P(FreeRunningClock, StaysWithinAMillisecondAndNeverStepsBack) {
 INSTANTIATE_TEST_SUITE_P(Drift, FreeRunningClock, testing::Values(-100.0, 0.0, 100.0));
 
 TEST(FreeRunningClock, CountsTheTurnsOfASilenceLongerThanTheCounter) {
-  SensorClock clock(Receive(kVlp16Clock));
+  SensorClock clock(Receive(kLidarHourClock));
   TimeNs first;
   TimeNs second;
   ASSERT_EQ(clock.ToTime(100, {1'000'000'000}, &first), Status::kOk);
@@ -170,7 +170,7 @@ TEST(FreeRunningClock, CountsTheTurnsOfASilenceLongerThanTheCounter) {
 }
 
 TEST(FreeRunningClock, RefusesReadingsThatRunAhead) {
-  SensorClock clock(Receive(kVlp16Clock));
+  SensorClock clock(Receive(kLidarHourClock));
   TimeNs t;
   ASSERT_EQ(clock.ToTime(100, {1'000'000'000}, &t), Status::kOk);
   EXPECT_EQ(clock.ToTime(60'000'000, {1'001'000'000}, &t), Status::kStale);
@@ -198,7 +198,7 @@ TEST(FreeRunningClock, GoesOnWhenTheSensorRestarts) {
 
 // A log whose recorded times leap by centuries must not add up to more than 64 bits hold.
 TEST(SharedClock, StaysFiniteWhenTheReceiveClockLeaps) {
-  SensorClock clock(kVlp16Clock);
+  SensorClock clock(kLidarHourClock);
   TimeNs t;
   for (int round = 0; round < 100; ++round) {
     // Each round the counter falls back, and is believed after a few readings.
