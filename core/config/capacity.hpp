@@ -9,7 +9,7 @@ namespace mapweld {
 struct Capacity {
   // sensor
   std::size_t packet_points = 768;   // one LiDAR packet: VLP-16 dual return 2 x 384
-  std::size_t scan_points = 65536;   // one revolution before down-sampling
+  std::size_t scan_points = 131072;  // one revolution before down-sampling
   std::size_t scan_features = 8192;  // one revolution after down-sampling
   std::size_t imu_ring = 1024;       // 2.5 s at 400 Hz
   // maps
