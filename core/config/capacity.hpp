@@ -35,6 +35,6 @@ static_assert((kCap.submap_map_voxels & (kCap.submap_map_voxels - 1)) == 0, "has
 static_assert(kCap.scan_features <= kCap.scan_points);
 static_assert(kCap.submap_points < kCap.submap_map_voxels);
 static_assert(kCap.imu_ring >= 400 * 2, "the IMU ring bridges a LiDAR gap of 2 s at 400 Hz");
-static_assert(kCap.submap_encoded_bytes >= 5 * kCap.submap_points, "worst case of the submap encoding");
+static_assert(kCap.submap_encoded_bytes >= 5 * kCap.submap_points, "a full submap of scattered points");
 
 }  // namespace mapweld

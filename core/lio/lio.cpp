@@ -86,7 +86,10 @@ Status Lio::AddScan(const sensor::Scan& scan, LioUpdate* update) {
   update->t = scan.t_end;
   update->features = static_cast<int>(features_.size());
   map_.BeginScan();
+  const bool speed_unknown = SpeedUnknown();
+  if (has_map_ && speed_unknown) GuessSpeed();
   if (has_map_) UpdateFromScan(update);
+  if (update->corrected && speed_unknown) BeginMapAgain(scan);
   uncorrected_scans_ = update->corrected || !has_map_ ? 0 : uncorrected_scans_ + 1;
   if (uncorrected_scans_ == 0 || uncorrected_scans_ > config_.max_uncorrected_scans) GrowMap();
   Publish(update);
@@ -151,6 +154,45 @@ void Lio::PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion) {
 
   const geom::Pose3 end_T_local = state_.local_T_body.Inverse();
   for (std::size_t i = 0; i <= kSteps; ++i) motion->end_T_body[i] = end_T_local * local_T_body[i];
+}
+
+bool Lio::SpeedUnknown() const {
+  return covariance_.block<3, 3>(kVelocity, kVelocity).trace() > 1.0;  // m^2/s^2: a start in motion
+}
+
+// A start in motion, second scan: which speed ahead or astern brings it onto the first? Both are smeared alike, so the
+// shift between them is right although neither could be de-skewed. Some 20 passes over the features, once.
+void Lio::GuessSpeed() {
+  constexpr double kGateM = 0.3;
+  const double dt_s = (state_.t - scan_state_.t).Seconds();
+  const geom::Vec3d ahead = state_.local_T_body.q * geom::Vec3d::UnitX();
+  double best_m_s = 0;
+  int most = -1;
+  for (int i = 0; i <= 20; ++i) {
+    const double speed_m_s = 2.0 * ((i % 2 == 0) ? i / 2 : -(i + 1) / 2) + 14.0;  // 14, 12, 16, ... -6, 34
+    geom::Pose3 shifted = state_.local_T_body;
+    shifted.t += speed_m_s * dt_s * ahead;
+    const int inliers = MatchScan(features_, shifted, kGateM, config_.match, &map_).inliers;
+    if (inliers <= most) continue;
+    most = inliers;
+    best_m_s = speed_m_s;
+  }
+  state_.local_T_body.t += best_m_s * dt_s * ahead;
+  state_.v_local = best_m_s * ahead;
+}
+
+// The speed has just become known: the scan is de-skewed again and the map starts from it, without the smeared first.
+void Lio::BeginMapAgain(const sensor::Scan& scan) {
+  scan::ScanMotion motion;
+  const geom::Vec3d v_body = state_.local_T_body.q.conjugate() * state_.v_local;
+  const double duration_s = (scan.t_end - scan.t_begin).Seconds();
+  for (std::size_t i = 0; i <= scan::ScanMotion::kSteps; ++i) {
+    const double before_end_s =
+        duration_s * (1 - static_cast<double>(i) / static_cast<double>(scan::ScanMotion::kSteps));
+    motion.end_T_body[i] = {-before_end_s * v_body, geom::ExpSo3(-before_end_s * turn_body_)};
+  }
+  scan::Deskew(scan, motion, config_.body_T_lidar, config_.deskew, &body_points_);
+  map_.Clear();
 }
 
 // Iterated update (FAST-LIO2, eqs. 14-18) in information form:

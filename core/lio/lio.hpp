@@ -80,6 +80,9 @@ class Lio {
   [[nodiscard]] bool Measured() const;
   void Step(TimeNs t_end);
   void PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion);
+  [[nodiscard]] bool SpeedUnknown() const;
+  void GuessSpeed();
+  void BeginMapAgain(const sensor::Scan& scan);
   void UpdateFromScan(LioUpdate* update);
   void GrowMap();
   void Publish(LioUpdate* update);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/agent_pipeline.hpp"
 
-#include "core/submap/submap_codec.hpp"
-
 namespace mapweld::pipeline {
 
 AgentPipeline::AgentPipeline(const AgentConfig& config, AgentSink* sink)
@@ -108,7 +106,7 @@ void AgentPipeline::Release(const PendingKeyframe& pending, bool flushed) {
     ++counters_.undescribed;
     out.place = {};
   }
-  const Result<std::size_t> bytes = submap::EncodeSubmap(submap_, encoded_);
+  const Result<std::size_t> bytes = encoder_.Encode(submap_, encoded_);
   if (bytes.ok()) out.encoded = {encoded_.data(), bytes.value()};
   ++counters_.keyframes;
   sink_->OnKeyframe(out);

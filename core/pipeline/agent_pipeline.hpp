@@ -16,6 +16,7 @@
 #include "core/sensor/lidar_packet.hpp"
 #include "core/submap/rolling_map.hpp"
 #include "core/submap/submap.hpp"
+#include "core/submap/submap_codec.hpp"
 
 namespace mapweld::pipeline {
 
@@ -121,6 +122,7 @@ class AgentPipeline {
 
   place::Describer describer_;
   submap::Submap submap_;
+  submap::SubmapEncoder encoder_;
   std::array<std::uint8_t, kCap.submap_encoded_bytes> encoded_{};
 
   correct::LocalCorrection correction_;

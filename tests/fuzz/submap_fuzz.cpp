@@ -12,6 +12,7 @@ namespace mapweld::fuzz {
 
 std::vector<Bytes> Seeds() {
   auto submap = std::make_unique<submap::Submap>();
+  auto encoder = std::make_unique<submap::SubmapEncoder>();
   submap->keyframe = 5;
   submap->t = {123'456'789};
   std::vector<Bytes> out;
@@ -28,7 +29,7 @@ std::vector<Bytes> Seeds() {
       }
     }
     Bytes bytes(8192);
-    const Result<std::size_t> n = submap::EncodeSubmap(*submap, bytes);
+    const Result<std::size_t> n = encoder->Encode(*submap, bytes);
     FUZZ_REQUIRE(n.ok());
     bytes.resize(n.value());
     out.push_back(bytes);

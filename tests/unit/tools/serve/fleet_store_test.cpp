@@ -43,7 +43,7 @@ std::vector<mapweldlcm::submap_chunk_t> Chunks(int keyframe) {
         {0.25F + 0.5F * static_cast<float>(i % 100), 0.25F, 0.25F + 0.5F * static_cast<float>(i / 100), 1, 0});
   }
   std::vector<std::uint8_t> bytes(kCap.submap_encoded_bytes);
-  bytes.resize(submap::EncodeSubmap(*submap, bytes).value());
+  bytes.resize(std::make_unique<submap::SubmapEncoder>()->Encode(*submap, bytes).value());
   std::vector<mapweldlcm::submap_chunk_t> chunks;
   for (std::size_t at = 0; at < bytes.size(); at += 1280) {
     mapweldlcm::submap_chunk_t m{};
