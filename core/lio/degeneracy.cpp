@@ -26,9 +26,8 @@ geom::Mat3d Determined(const geom::Mat3d& block, double min_information, double*
 Degeneracy RemoveOpenDirections(const DegeneracyConfig& config, geom::Mat6d* information, geom::Vec6d* gradient) {
   Degeneracy result;
   geom::Mat6d projector = geom::Mat6d::Zero();
-  projector.topLeftCorner<3, 3>() =
-      Determined(information->topLeftCorner<3, 3>(), config.min_position_information, &result.position_information,
-                 &result.open_positions);
+  projector.topLeftCorner<3, 3>() = Determined(information->topLeftCorner<3, 3>(), config.min_position_information,
+                                               &result.position_information, &result.open_positions);
   projector.bottomRightCorner<3, 3>() =
       Determined(information->bottomRightCorner<3, 3>(), config.min_rotation_information, &result.rotation_information,
                  &result.open_rotations);

@@ -18,8 +18,8 @@ struct ImuAlignmentConfig {
 
 struct Alignment {
   geom::Quatd local_R_body = geom::Quatd::Identity();  // roll and pitch from gravity, yaw 0
-  geom::Vec3d gyro_bias = geom::Vec3d::Zero();        // rad/s
-  double gravity_m_s2 = 9.81;                         // as this accelerometer measures it
+  geom::Vec3d gyro_bias = geom::Vec3d::Zero();         // rad/s
+  double gravity_m_s2 = 9.81;                          // as this accelerometer measures it
   bool moving = false;  // the vehicle never stood still: roll and pitch may be wrong by 5 degrees, the bias is unknown
 };
 

@@ -41,6 +41,7 @@ Status Lio::AddImu(const sensor::ImuSample& sample) {
   if (!sample.gyro_body.allFinite() || !sample.accel_body.allFinite()) return Status::kBadInput;
   if (sample.t <= newest_imu_) return Status::kStale;
   newest_imu_ = sample.t;
+  if (IsStuck(sample) || (aligned_ && sample.clipped)) return Status::kBadInput;
   if (aligned_) {
     if (imu_.size() == imu_.capacity()) Step(imu_[imu_.size() / 2].t);  // no scan for long: the state moves on without
     imu_.Push(sample);
@@ -51,6 +52,13 @@ Status Lio::AddImu(const sensor::ImuSample& sample) {
   StartFromAlignment(sample.t);
   imu_.Push(sample);
   return Status::kOk;
+}
+
+bool Lio::IsStuck(const sensor::ImuSample& sample) {
+  const bool same = sample.gyro_body == last_imu_.gyro_body && sample.accel_body == last_imu_.accel_body;
+  repeats_ = same ? repeats_ + 1 : 0;
+  last_imu_ = sample;
+  return repeats_ >= kStuckSamples;
 }
 
 void Lio::StartFromAlignment(TimeNs t) {
@@ -227,12 +235,14 @@ void Lio::UpdateFromScan(LioUpdate* update) {
   covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
   // The covariance of a correction is what the covariance of the state loses by it.
   const geom::Vec6d moved = LocalCoordinates(prediction, estimate).head<6>();
-  const geom::Mat6d expected = prior - covariance_.topLeftCorner<6, 6>() + 1e-3 * geom::Mat6d(prior.diagonal().asDiagonal());
+  const geom::Mat6d expected =
+      prior - covariance_.topLeftCorner<6, 6>() + 1e-3 * geom::Mat6d(prior.diagonal().asDiagonal());
   update->surprise = moved.dot(expected.ldlt().solve(moved)) / 6;
   // Where no IMU measured, the scans tell the rate of turn.
   const double since_s = (prediction.t - scan_state_.t).Seconds();
   if (coasted_.Seconds() > 0.5 * since_s && since_s > 0) {
-    turn_body_ = geom::LogSo3((scan_state_.local_T_body.q.conjugate() * estimate.local_T_body.q).normalized()) / since_s;
+    turn_body_ =
+        geom::LogSo3((scan_state_.local_T_body.q.conjugate() * estimate.local_T_body.q).normalized()) / since_s;
   }
   state_ = estimate;
   update->degenerate = update->degeneracy.any();
@@ -251,8 +261,7 @@ void Lio::GrowMap() {
 }
 
 void Lio::Publish(LioUpdate* update) {
-  const geom::Quatd odom_R_local =
-      geom::RotationBetween(-state_.gravity_local.normalized(), geom::Vec3d::UnitZ());
+  const geom::Quatd odom_R_local = geom::RotationBetween(-state_.gravity_local.normalized(), geom::Vec3d::UnitZ());
   odom_T_body_.t += odom_R_local * (state_.local_T_body.t - scan_state_.local_T_body.t);
   odom_T_body_.q = (odom_R_local * state_.local_T_body.q).normalized();
   scan_state_ = state_;

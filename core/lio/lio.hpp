@@ -27,10 +27,10 @@ struct LioConfig {
   ScanMatchConfig match;
   float feature_voxel_m = 0.6F;  // features for matching
   int max_iterations = 5;
-  double max_imu_gap_s = 0.03;            // a longer gap between samples is coasted over
-  float max_map_range_m = 80.0F;          // points farther away do not enter the map
-  int min_inliers = 60;                   // fewer: the scan does not correct the state
-  int max_uncorrected_scans = 10;   // after that many the map is continued from the prediction
+  double max_imu_gap_s = 0.03;     // a longer gap between samples is coasted over
+  float max_map_range_m = 80.0F;   // points farther away do not enter the map
+  int min_inliers = 60;            // fewer: the scan does not correct the state
+  int max_uncorrected_scans = 10;  // after that many the map is continued from the prediction
   DegeneracyConfig degeneracy;
 };
 
@@ -42,11 +42,11 @@ struct LioUpdate {
   int inliers = 0;
   int iterations = 0;
   double residual_rms_m = 0;
-  Degeneracy degeneracy;       // of the position and the rotation, with the numbers
-  bool degenerate = false;     // the scan leaves a direction open; the IMU carries it
-  bool corrected = false;      // false: too few inliers, prediction only
-  double surprise = 0;         // squared correction over its expected size; 1 on average while all models are true
-  double sigma_m = 0;          // standard deviation of the position
+  Degeneracy degeneracy;    // of the position and the rotation, with the numbers
+  bool degenerate = false;  // the scan leaves a direction open; the IMU carries it
+  bool corrected = false;   // false: too few inliers, prediction only
+  double surprise = 0;      // squared correction over its expected size; 1 on average while all models are true
+  double sigma_m = 0;       // standard deviation of the position
   geom::Mat6d covariance = geom::Mat6d::Zero();  // of the pose against the map: m in local axes, then rad in the body
 };
 
@@ -59,7 +59,8 @@ class Lio {
  public:
   explicit Lio(const LioConfig& config = {}) : config_(config), alignment_(config.alignment), map_(config.map) {}
 
-  // Samples in time order. kStale: not newer than the last one. kBadInput: not finite. Both leave the state as it was.
+  // Samples in time order. kStale: not newer than the last one. kBadInput: not finite, clipped, or the sensor has been
+  // repeating itself for kStuckSamples. Both leave the state as it was; what is missing then is coasted over.
   Status AddImu(const sensor::ImuSample& sample);
 
   // Runs one scan through the filter. IMU samples up to scan.t_end should have been added: what is missing is coasted
@@ -80,6 +81,9 @@ class Lio {
   [[nodiscard]] bool Measured() const;
   void Step(TimeNs t_end);
   void PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion);
+  static constexpr int kStuckSamples = 20;  // a live sensor's noise does not give the same six numbers so often
+
+  [[nodiscard]] bool IsStuck(const sensor::ImuSample& sample);
   [[nodiscard]] bool SpeedUnknown() const;
   void GuessSpeed();
   void BeginMapAgain(const sensor::Scan& scan);
@@ -100,6 +104,8 @@ class Lio {
   geom::Pose3 odom_T_body_;                      // ... and the pose published for it
   ErrorMatrix covariance_ = ErrorMatrix::Zero();
   TimeNs newest_imu_{INT64_MIN};
+  sensor::ImuSample last_imu_;
+  int repeats_ = 0;
   RingBuffer<sensor::ImuSample, kCap.imu_ring> imu_;
   scan::BodyPoints body_points_;
   scan::VoxelDownsample downsample_;

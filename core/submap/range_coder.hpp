@@ -4,7 +4,7 @@
 // encoding", 1979), with 12-bit probabilities that move by 1/32 per bit.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,6 +44,15 @@ class RangeEncoder {
       range_ = bound;
     }
     model->Learn(bit);
+    while (range_ < kTop) {
+      range_ <<= 8U;
+      ShiftOut();
+    }
+  }
+  // `bits` (at most 8) bits of value that are as good as random, in one step.
+  void PutEven(std::uint32_t value, unsigned bits) {
+    range_ >>= bits;
+    low_ += static_cast<std::uint64_t>(value) * range_;
     while (range_ < kTop) {
       range_ <<= 8U;
       ShiftOut();
@@ -111,6 +120,16 @@ class RangeDecoder {
       code_ = (code_ << 8U) | Read();
     }
     return bit;
+  }
+  std::uint32_t GetEven(unsigned bits) {
+    range_ >>= bits;
+    const std::uint32_t value = std::min(code_ / range_, (1U << bits) - 1);
+    code_ -= value * range_;
+    while (range_ < kTop) {
+      range_ <<= 8U;
+      code_ = (code_ << 8U) | Read();
+    }
+    return value;
   }
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] std::size_t read() const { return at_; }

@@ -2,6 +2,7 @@
 #include "core/submap/rolling_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/voxel_key.hpp"
 #include "core/submap/submap_grid.hpp"
@@ -91,10 +92,14 @@ Status RollingMap::Extract(const geom::Pose3& odom_T_body, double path_m, Submap
   submap->radius_m = config_.radius_m;
   submap->points.clear();
   found_.clear();
+  const geom::Vec3d centre = odom_T_body.t / static_cast<double>(config_.voxel_m);
+  const auto reach = static_cast<double>(config_.radius_m / config_.voxel_m) + 2;
   Status status = Status::kOk;
   for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
     const Voxel& voxel = voxels_[i];
     if (voxel.key == 0 || voxel.seen_dm < seen_from || voxel.seen_dm > seen_to) continue;
+    const Cell cell = UnpackCell(voxel.key);
+    if (std::abs(cell.x - centre.x()) > reach || std::abs(cell.y - centre.y()) > reach) continue;
     const SubmapPoint point = PointOf(voxel, level_R_odom, level_T_odom.t);
     if (point.x * point.x + point.y * point.y + point.z * point.z > config_.radius_m * config_.radius_m) continue;
     Found found{0, i};

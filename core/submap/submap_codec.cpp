@@ -46,7 +46,7 @@ SubmapPoint FromContent(std::uint32_t key, const CellContent& content, float vox
 // Goes through the occupied cells in order, the same way for encoder and decoder. The side supplies:
 //   Mask(level)                 the occupied children of the node that holds the next point; the decoder knows none
 //   Content(), More(key)        the next point; does another one lie in this cell?
-//   operator()(bit, model)      codes a bit and gives the bit that holds
+//   operator()(bit, model), Even(value, bits)   code and give what holds, see submap_models.hpp
 //   Take(key, content)          one point is coded
 template <class Side>
 Status WalkOctree(SubmapModels* models, Side* side) {
@@ -93,6 +93,10 @@ class EncoderSide {
     coder_->Put(bit, model);
     return bit;
   }
+  std::uint32_t Even(std::uint32_t value, unsigned bits) const {
+    coder_->PutEven(value, bits);
+    return value;
+  }
   [[nodiscard]] std::uint8_t Mask(unsigned level) const {
     const unsigned shift = 3 * level;
     unsigned mask = 0;
@@ -121,6 +125,7 @@ class DecoderSide {
       : points_(points), coder_(coder), submap_(submap) {}
 
   bool operator()(bool, BitModel* model) const { return coder_->Get(model); }
+  std::uint32_t Even(std::uint32_t, unsigned bits) const { return coder_->GetEven(bits); }
   [[nodiscard]] std::uint8_t Mask(unsigned) const { return 0; }
   [[nodiscard]] CellContent Content() const { return {}; }
   [[nodiscard]] bool More(std::uint32_t) const { return false; }

@@ -27,7 +27,8 @@ class SubmapEncoder {
   SubmapModels models_;
 };
 
-// 35 kB of stack. kBadInput, kVersion or kCrc on anything that EncodeSubmap did not write; *submap is then undefined but valid.
+// 35 kB of stack. kBadInput, kVersion or kCrc on anything that EncodeSubmap did not write; *submap is then undefined
+// but valid.
 Status DecodeSubmap(std::span<const std::uint8_t> bytes, Submap* submap);
 
 }  // namespace mapweld::submap

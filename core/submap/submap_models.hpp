@@ -11,6 +11,7 @@
 namespace mapweld::submap {
 
 inline constexpr unsigned kStepBits = 4;  // the mean of a cell is coded in 1/16 of its edge
+inline constexpr unsigned kEvenBits = 2;  // of x and y: the last bits, in which nothing can be foreseen
 
 // The mean inside a cell, in steps, and whether more than one return made it.
 struct CellContent {
@@ -60,7 +61,8 @@ struct SubmapModels {
   std::array<BitModel, 3> seen_again;
 };
 
-// A coder that moves each bit from or to the value: `code(bool bit, BitModel*)` gives the bit that holds.
+// `code` is the encoder's or the decoder's side: code(bit, model) and code.Even(value, bits) take what the encoder
+// knows and give what holds.
 template <class Code>
 std::uint8_t CodeMask(std::uint8_t mask, std::array<BitModel, 256>* models, const Code& code) {
   unsigned path = 1;
@@ -81,11 +83,17 @@ CellContent CodeContent(const CellContent& content, unsigned child, const CodedB
   for (unsigned axis = 0; axis < 3; ++axis) {
     auto& tree = models->step[axis][block.Guess(child, axis)];
     unsigned path = 1;
-    for (unsigned bit = kStepBits; bit-- > 0;) {
+    const unsigned even = axis == 2 ? 0 : kEvenBits;
+    for (unsigned bit = kStepBits; bit-- > even;) {
       path = (path << 1U) | (code(((content.step[axis] >> bit) & 1U) != 0, &tree[path]) ? 1U : 0U);
     }
-    out.step[axis] = static_cast<std::uint8_t>(path - (1U << kStepBits));
+    out.step[axis] = static_cast<std::uint8_t>((path << even) & ((1U << kStepBits) - 1));
   }
+  constexpr unsigned kEvenMask = (1U << kEvenBits) - 1;
+  const unsigned rest =
+      code.Even(((content.step[0] & kEvenMask) << kEvenBits) | (content.step[1] & kEvenMask), 2 * kEvenBits);
+  out.step[0] = static_cast<std::uint8_t>(out.step[0] | (rest >> kEvenBits));
+  out.step[1] = static_cast<std::uint8_t>(out.step[1] | (rest & kEvenMask));
   out.seen_again = code(content.seen_again, &models->seen_again[block.GuessSeen(child)]);
   return out;
 }

@@ -80,11 +80,13 @@ std::string Report(const OdometryRun& run, const std::vector<io::StampedPose>& t
       "CPU ms per scan: median {:.2f}, 99th percentile {:.2f}, max {:.2f}, mean {:.2f}\n",
       run.counters.scans, run.counters.scans_dropped, degenerate, uncorrected, Quantile(residual_m, 0.5),
       largest_sigma_m, Quantile(cpu_ms, 0.5), Quantile(cpu_ms, 0.99), Quantile(cpu_ms, 1.0),
-      std::accumulate(cpu_ms.begin(), cpu_ms.end(), 0.0) / static_cast<double>(std::max<std::size_t>(cpu_ms.size(), 1)));
+      std::accumulate(cpu_ms.begin(), cpu_ms.end(), 0.0) /
+          static_cast<double>(std::max<std::size_t>(cpu_ms.size(), 1)));
   if (!run.submap_bytes.empty()) {
-    text += fmt::format("{} submaps of {:.0f} points and {:.1f} kB (mean; largest {:.1f} kB)\n", run.submap_bytes.size(),
-                        Mean(run.submap_points), Mean(run.submap_bytes) * 1e-3,
-                        static_cast<double>(*std::max_element(run.submap_bytes.begin(), run.submap_bytes.end())) * 1e-3);
+    text +=
+        fmt::format("{} submaps of {:.0f} points and {:.1f} kB (mean; largest {:.1f} kB)\n", run.submap_bytes.size(),
+                    Mean(run.submap_points), Mean(run.submap_bytes) * 1e-3,
+                    static_cast<double>(*std::max_element(run.submap_bytes.begin(), run.submap_bytes.end())) * 1e-3);
   }
   return text;
 }
