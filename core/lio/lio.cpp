@@ -64,6 +64,7 @@ bool Lio::IsStuck(const sensor::ImuSample& sample) {
 void Lio::StartFromAlignment(TimeNs t) {
   const Alignment& found = alignment_.alignment();
   aligned_ = true;
+  speed_unknown_ = found.moving;
   state_.t = t;
   state_.local_T_body.q = found.local_R_body;
   state_.gyro_bias = found.gyro_bias;
@@ -74,6 +75,7 @@ void Lio::StartFromAlignment(TimeNs t) {
 
 void Lio::StartWithoutImu(TimeNs t) {
   aligned_ = true;
+  speed_unknown_ = true;
   state_.t = t;
   scan_state_ = state_;
   covariance_ = Diagonal(1e-4, 1e-4, 20, 1e-3, 1e-2, 1e-2);
@@ -94,10 +96,9 @@ Status Lio::AddScan(const sensor::Scan& scan, LioUpdate* update) {
   update->t = scan.t_end;
   update->features = static_cast<int>(features_.size());
   map_.BeginScan();
-  const bool speed_unknown = SpeedUnknown();
-  if (has_map_ && speed_unknown) GuessSpeed();
+  if (has_map_ && speed_unknown_) GuessSpeed();
   if (has_map_) UpdateFromScan(update);
-  if (update->corrected && speed_unknown) BeginMapAgain(scan);
+  if (speed_unknown_ && update->corrected) BeginMapAgain(scan);
   uncorrected_scans_ = update->corrected || !has_map_ ? 0 : uncorrected_scans_ + 1;
   if (uncorrected_scans_ == 0 || uncorrected_scans_ > config_.max_uncorrected_scans) GrowMap();
   Publish(update);
@@ -164,10 +165,6 @@ void Lio::PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion) {
   for (std::size_t i = 0; i <= kSteps; ++i) motion->end_T_body[i] = end_T_local * local_T_body[i];
 }
 
-bool Lio::SpeedUnknown() const {
-  return covariance_.block<3, 3>(kVelocity, kVelocity).trace() > 1.0;  // m^2/s^2: a start in motion
-}
-
 // A start in motion, second scan: which speed ahead or astern brings it onto the first? Both are smeared alike, so the
 // shift between them is right although neither could be de-skewed. Some 20 passes over the features, once.
 void Lio::GuessSpeed() {
@@ -201,6 +198,7 @@ void Lio::BeginMapAgain(const sensor::Scan& scan) {
   }
   scan::Deskew(scan, motion, config_.body_T_lidar, config_.deskew, &body_points_);
   map_.Clear();
+  speed_unknown_ = false;
 }
 
 // Iterated update (FAST-LIO2, eqs. 14-18) in information form:

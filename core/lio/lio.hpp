@@ -84,7 +84,6 @@ class Lio {
   static constexpr int kStuckSamples = 20;  // a live sensor's noise does not give the same six numbers so often
 
   [[nodiscard]] bool IsStuck(const sensor::ImuSample& sample);
-  [[nodiscard]] bool SpeedUnknown() const;
   void GuessSpeed();
   void BeginMapAgain(const sensor::Scan& scan);
   void UpdateFromScan(LioUpdate* update);
@@ -96,6 +95,7 @@ class Lio {
   VoxelMap map_;
   bool aligned_ = false;
   bool has_map_ = false;
+  bool speed_unknown_ = false;  // a start in motion: until the second scan
   int uncorrected_scans_ = 0;
   InertialState state_;
   geom::Vec3d turn_body_ = geom::Vec3d::Zero();  // rad/s, the last known
