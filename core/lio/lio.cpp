@@ -35,11 +35,19 @@ ErrorMatrix CovarianceAtRest(const geom::Quatd& local_R_body) {
   return covariance;
 }
 
+ErrorMatrix CovarianceInMotion() {
+  return Diagonal(1e-4, 1e-4, 20, 5e-3, 3e-2, 1.0);
+}
+
 }  // namespace
 
 Status Lio::AddImu(const sensor::ImuSample& sample) {
   if (!sample.gyro_body.allFinite() || !sample.accel_body.allFinite()) return Status::kBadInput;
-  if (sample.t <= newest_imu_) return Status::kStale;
+  if (sample.t <= newest_imu_) {
+    if (++stale_in_a_row_ < kResyncSamples) return Status::kStale;
+    imu_.clear();
+  }
+  stale_in_a_row_ = 0;
   newest_imu_ = sample.t;
   if (IsStuck(sample) || (aligned_ && sample.clipped)) return Status::kBadInput;
   if (aligned_) {
@@ -64,12 +72,12 @@ bool Lio::IsStuck(const sensor::ImuSample& sample) {
 void Lio::StartFromAlignment(TimeNs t) {
   const Alignment& found = alignment_.alignment();
   aligned_ = true;
-  speed_unknown_ = found.moving;
+  speed_unknown_ = true;
   state_.t = t;
   state_.local_T_body.q = found.local_R_body;
   state_.gyro_bias = found.gyro_bias;
   state_.gravity_local = {0, 0, -found.gravity_m_s2};
-  covariance_ = found.moving ? Diagonal(1e-4, 1e-4, 20, 5e-3, 3e-2, 1.0) : CovarianceAtRest(found.local_R_body);
+  covariance_ = found.moving ? CovarianceInMotion() : CovarianceAtRest(found.local_R_body);
   scan_state_ = state_;
 }
 
@@ -78,7 +86,7 @@ void Lio::StartWithoutImu(TimeNs t) {
   speed_unknown_ = true;
   state_.t = t;
   scan_state_ = state_;
-  covariance_ = Diagonal(1e-4, 1e-4, 20, 1e-3, 1e-2, 1e-2);
+  covariance_ = CovarianceInMotion();
 }
 
 Status Lio::AddScan(const sensor::Scan& scan, LioUpdate* update) {
@@ -165,25 +173,32 @@ void Lio::PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion) {
   for (std::size_t i = 0; i <= kSteps; ++i) motion->end_T_body[i] = end_T_local * local_T_body[i];
 }
 
-// A start in motion, second scan: which speed ahead or astern brings it onto the first? Both are smeared alike, so the
-// shift between them is right although neither could be de-skewed. Some 20 passes over the features, once.
+// Second scan: which speed ahead or astern brings it onto the first? Both are smeared alike, so the shift between them
+// is right although neither could be de-skewed. Standing still is believed unless another speed fits much better: a
+// smooth road feels like rest to an IMU. Some 20 passes over the features, once.
 void Lio::GuessSpeed() {
   constexpr double kGateM = 0.3;
   const double dt_s = (state_.t - scan_state_.t).Seconds();
   const geom::Vec3d ahead = state_.local_T_body.q * geom::Vec3d::UnitX();
-  double best_m_s = 0;
-  int most = -1;
-  for (int i = 0; i <= 20; ++i) {
-    const double speed_m_s = 2.0 * ((i % 2 == 0) ? i / 2 : -(i + 1) / 2) + 14.0;  // 14, 12, 16, ... -6, 34
-    geom::Pose3 shifted = state_.local_T_body;
+  const auto inliers_at = [&](double speed_m_s) {
+    geom::Pose3 shifted = scan_state_.local_T_body;
     shifted.t += speed_m_s * dt_s * ahead;
-    const int inliers = MatchScan(features_, shifted, kGateM, config_.match, &map_).inliers;
+    shifted.q = state_.local_T_body.q;
+    return MatchScan(features_, shifted, kGateM, config_.match, &map_).inliers;
+  };
+  int most = std::max(config_.min_inliers, inliers_at(0) * 5 / 4);
+  double best_m_s = 0;
+  for (int i = -3; i <= 17; ++i) {
+    const int inliers = inliers_at(2.0 * i);
     if (inliers <= most) continue;
     most = inliers;
-    best_m_s = speed_m_s;
+    best_m_s = 2.0 * i;
   }
-  state_.local_T_body.t += best_m_s * dt_s * ahead;
+  speed_unknown_ = best_m_s != 0;
+  if (!speed_unknown_) return;
+  state_.local_T_body.t = scan_state_.local_T_body.t + best_m_s * dt_s * ahead;
   state_.v_local = best_m_s * ahead;
+  covariance_ = CovarianceInMotion();
 }
 
 // The speed has just become known: the scan is de-skewed again and the map starts from it, without the smeared first.

@@ -59,7 +59,8 @@ class Lio {
  public:
   explicit Lio(const LioConfig& config = {}) : config_(config), alignment_(config.alignment), map_(config.map) {}
 
-  // Samples in time order. kStale: not newer than the last one. kBadInput: not finite, clipped, or the sensor has been
+  // Samples in time order. kStale: not newer than the last one; after kResyncSamples of these in a row the newcomers
+  // are believed: the stamp before them had jumped ahead. kBadInput: not finite, clipped, or the sensor has been
   // repeating itself for kStuckSamples. Both leave the state as it was; what is missing then is coasted over.
   Status AddImu(const sensor::ImuSample& sample);
 
@@ -69,7 +70,6 @@ class Lio {
   Status AddScan(const sensor::Scan& scan, LioUpdate* update);
 
   [[nodiscard]] bool aligned() const { return aligned_; }
-  [[nodiscard]] bool uses_imu() const { return config_.use_imu; }
   [[nodiscard]] TimeNs newest_imu() const { return newest_imu_; }
   [[nodiscard]] const InertialState& state() const { return state_; }
   // The last scan's de-skewed points in the body frame at its end.
@@ -81,6 +81,7 @@ class Lio {
   [[nodiscard]] bool Measured() const;
   void Step(TimeNs t_end);
   void PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion);
+  static constexpr int kResyncSamples = 20;
   static constexpr int kStuckSamples = 20;  // a live sensor's noise does not give the same six numbers so often
 
   [[nodiscard]] bool IsStuck(const sensor::ImuSample& sample);
@@ -95,7 +96,7 @@ class Lio {
   VoxelMap map_;
   bool aligned_ = false;
   bool has_map_ = false;
-  bool speed_unknown_ = false;  // a start in motion: until the second scan
+  bool speed_unknown_ = false;  // until the second scan
   int uncorrected_scans_ = 0;
   InertialState state_;
   geom::Vec3d turn_body_ = geom::Vec3d::Zero();  // rad/s, the last known
@@ -106,6 +107,7 @@ class Lio {
   TimeNs newest_imu_{INT64_MIN};
   sensor::ImuSample last_imu_;
   int repeats_ = 0;
+  int stale_in_a_row_ = 0;
   RingBuffer<sensor::ImuSample, kCap.imu_ring> imu_;
   scan::BodyPoints body_points_;
   scan::VoxelDownsample downsample_;
