@@ -44,7 +44,7 @@ Status ImuAlignment::Add(const sensor::ImuSample& sample) {
   if ((sample.t - begin_).Seconds() >= config_.duration_s && n_ >= 20) {
     return Finish(accel_sum_ / n_, gyro_sum_ / n_, false);
   }
-  if ((sample.t - first_).Seconds() >= config_.patience_s) {
+  if (moving && (sample.t - first_).Seconds() >= config_.patience_s) {
     return Finish(accel_sum_all_ / all_, geom::Vec3d::Zero(), true);
   }
   return Status::kNotReady;
