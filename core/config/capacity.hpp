@@ -9,7 +9,7 @@ namespace mapweld {
 struct Capacity {
   // sensor
   std::size_t packet_points = 4096;  // one LiDAR packet: 16 columns of 128 beams with two returns
-  std::size_t scan_points = 65536;   // one revolution before down-sampling
+  std::size_t scan_points = 131072;  // one revolution before down-sampling
   std::size_t scan_features = 8192;  // one revolution after down-sampling
   std::size_t imu_ring = 1024;       // 2.5 s at 400 Hz
   // maps
@@ -35,6 +35,6 @@ static_assert((kCap.submap_map_voxels & (kCap.submap_map_voxels - 1)) == 0, "has
 static_assert(kCap.scan_features <= kCap.scan_points);
 static_assert(kCap.submap_points < kCap.submap_map_voxels);
 static_assert(kCap.imu_ring >= 400 * 2, "the IMU ring bridges a LiDAR gap of 2 s at 400 Hz");
-static_assert(kCap.submap_encoded_bytes >= 5 * kCap.submap_points, "worst case of the submap encoding");
+static_assert(kCap.submap_encoded_bytes >= 5 * kCap.submap_points, "a full submap of scattered points");
 
 }  // namespace mapweld

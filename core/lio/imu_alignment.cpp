@@ -24,7 +24,14 @@ void ImuAlignment::Restart(const sensor::ImuSample& sample) {
 }
 
 Status ImuAlignment::Add(const sensor::ImuSample& sample) {
+  if (all_ == 0 || sample.t < first_) {
+    first_ = sample.t;
+    all_ = 0;
+    accel_sum_all_.setZero();
+  }
   if (n_ == 0 || sample.t < begin_) Restart(sample);
+  ++all_;
+  accel_sum_all_ += sample.accel_body;
   ++n_;
   gyro_sum_ += sample.gyro_body;
   gyro_sum_sq_ += sample.gyro_body.cwiseProduct(sample.gyro_body);
@@ -33,23 +40,28 @@ Status ImuAlignment::Add(const sensor::ImuSample& sample) {
 
   const bool moving = n_ >= 20 && (Spread(gyro_sum_, gyro_sum_sq_, n_) > config_.max_gyro_spread ||
                                    Spread(accel_sum_, accel_sum_sq_, n_) > config_.max_accel_spread);
-  if (moving || sample.clipped) {
-    Restart(sample);
-    return Status::kNotReady;
+  if (moving || sample.clipped) Restart(sample);
+  if ((sample.t - begin_).Seconds() >= config_.duration_s && n_ >= 20) {
+    return Finish(accel_sum_ / n_, gyro_sum_ / n_, false);
   }
-  if ((sample.t - begin_).Seconds() < config_.duration_s || n_ < 20) return Status::kNotReady;
+  if (moving && (sample.t - first_).Seconds() >= config_.patience_s) {
+    return Finish(accel_sum_all_ / all_, geom::Vec3d::Zero(), true);
+  }
+  return Status::kNotReady;
+}
 
-  const geom::Vec3d mean_accel = accel_sum_ / n_;
+Status ImuAlignment::Finish(const geom::Vec3d& mean_accel, const geom::Vec3d& gyro_bias, bool moving) {
+  n_ = 0;
+  all_ = 0;
   alignment_.gravity_m_s2 = mean_accel.norm();
-  if (alignment_.gravity_m_s2 < 8.8 || alignment_.gravity_m_s2 > 10.8) {
-    Restart(sample);
-    return Status::kOutOfRange;
-  }
-  alignment_.gyro_bias = gyro_sum_ / n_;
-  // The smallest rotation that puts the measured force upright has some yaw in it; odom starts with yaw 0.
+  const bool upright_enough = mean_accel.z() > 0.7 * alignment_.gravity_m_s2;
+  if (alignment_.gravity_m_s2 < 8.8 || alignment_.gravity_m_s2 > 10.8 || !upright_enough) return Status::kOutOfRange;
+  alignment_.moving = moving;
+  alignment_.gyro_bias = gyro_bias;
+  // The smallest rotation that puts the measured force upright has some yaw in it; local starts with yaw 0.
   const geom::Quatd upright = geom::RotationBetween(mean_accel.normalized(), geom::Vec3d::UnitZ());
   const geom::Quatd unyaw(Eigen::AngleAxisd(-geom::Yaw(upright), geom::Vec3d::UnitZ()));
-  alignment_.odom_R_body = (unyaw * upright).normalized();
+  alignment_.local_R_body = (unyaw * upright).normalized();
   return Status::kOk;
 }
 

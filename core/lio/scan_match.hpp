@@ -24,7 +24,7 @@ struct ScanMatch {
   double residual_sq_sum = 0;  // m^2 over the inliers
 };
 
-// One pass over the features: a look-up of 7 voxels and about 60 flops each. gate_m widens the gate in the first
+// One pass over the features: a look-up of 4 voxels and about 60 flops each. gate_m widens the gate in the first
 // iterations. Residual: n . (odom_T_body p - mean), weight Huber / (variance * correlation).
 ScanMatch MatchScan(const scan::FeaturePoints& features, const geom::Pose3& odom_T_body, double gate_m,
                     const ScanMatchConfig& config, VoxelMap* map);

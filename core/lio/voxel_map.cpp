@@ -85,11 +85,14 @@ bool VoxelMap::FindPlane(const Eigen::Vector3f& p_odom, Plane* plane) {
   const Eigen::Vector3f scaled = p_odom / config_.voxel_m;
   if (!scaled.allFinite() || scaled.cwiseAbs().maxCoeff() >= static_cast<float>(kCellLimit - 1)) return false;
   const Cell own{CellIndex(scaled.x()), CellIndex(scaled.y()), CellIndex(scaled.z())};
-  static constexpr std::int32_t kNear[7][3] = {{0, 0, 0},  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
-                                               {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  const auto nearer = [&scaled](int axis, std::int32_t cell) {
+    return scaled(axis) - static_cast<float>(cell) < 0.5F ? -1 : 1;
+  };
+  const std::int32_t near[4][3] = {
+      {0, 0, 0}, {nearer(0, own.x), 0, 0}, {0, nearer(1, own.y), 0}, {0, 0, nearer(2, own.z)}};
   float best = config_.voxel_m * config_.voxel_m;
   bool found = false;
-  for (const auto& step : kNear) {
+  for (const auto& step : near) {
     Voxel* const voxel = Find({own.x + step[0], own.y + step[1], own.z + step[2]});
     if (voxel == nullptr || voxel->count < config_.min_points) continue;
     voxel->touched_scan = scan_;

@@ -35,9 +35,12 @@ class VoxelMap {
 
   // Starts a scan: the age of voxels counts in scans.
   void BeginScan() { ++scan_; }
+  // Forgets everything; the age of scans goes on. Cost: one pass over the table.
+  void Clear() { voxels_.fill({}); }
   // Adds one point in the odom frame. kOutOfRange beyond the limits of the grid.
   Status Insert(const Eigen::Vector3f& p_odom);
-  // The plane nearest to the point among its own voxel and the six that share a face; false when none is flat.
+  // The plane nearest to the point among its own voxel and the three that share its nearer faces; false when none is
+  // flat. Four look-ups.
   bool FindPlane(const Eigen::Vector3f& p_odom, Plane* plane);
 
   [[nodiscard]] std::uint64_t evicted() const { return evicted_; }

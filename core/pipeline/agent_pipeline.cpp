@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/agent_pipeline.hpp"
 
-#include "core/submap/submap_codec.hpp"
-
 namespace mapweld::pipeline {
 
 AgentPipeline::AgentPipeline(const AgentConfig& config, AgentSink* sink)
@@ -35,7 +33,7 @@ void AgentPipeline::OnDriveEnd() {
   if (scan_waits_) OnScan(waiting_scan_);
   scan_waits_ = false;
   if (accumulator_.Flush(&waiting_scan_)) OnScan(waiting_scan_);
-  ReleaseKeyframes(true);
+  while (!pending_.empty()) ReleaseStep();
 }
 
 void AgentPipeline::ProcessWaitingScan() {
@@ -57,7 +55,7 @@ void AgentPipeline::OnScan(const sensor::Scan& scan) {
 
   FeedSubmaps();
   TakeKeyframeIfDue(update);
-  ReleaseKeyframes(false);
+  ReleaseDueKeyframes();
 
   PoseOutput pose{update, path_m_, correction_.group(), update.odom_T_body};
   if (correction_.active()) pose.merged_T_body = correction_.MergedFromOdom(update.t) * update.odom_T_body;
@@ -82,36 +80,51 @@ void AgentPipeline::TakeKeyframeIfDue(const lio::LioUpdate& update) {
   next_keyframe_path_m_ += config_.keyframe_spacing_m;
 }
 
-void AgentPipeline::ReleaseKeyframes(bool all) {
-  while (!pending_.empty()) {
-    const bool complete = path_m_ - pending_.front().path_m >= config_.release_distance_m;
-    if (!complete && !all) return;
-    Release(pending_.front(), !complete);
-    pending_.PopFront();
-  }
+bool AgentPipeline::Due(std::size_t pending) const {
+  return pending < pending_.size() && path_m_ - pending_[pending].path_m >= config_.release_distance_m;
 }
 
-void AgentPipeline::Release(const PendingKeyframe& pending, bool flushed) {
-  KeyframeOutput out;
-  out.index = pending.index;
-  out.t = pending.t;
-  out.odom_T_body = pending.odom_T_body;
-  out.path_m = pending.path_m;
-  out.flushed = flushed;
+void AgentPipeline::ReleaseDueKeyframes() {
+  if (Due(0)) ReleaseStep();
+  while (Due(1)) ReleaseStep();  // fast driving: more keyframes than steps
+}
 
-  submap_.keyframe = pending.index;
-  submap_.t = pending.t;
-  submap_.flushed = flushed;
-  if (rolling_map_.Extract(pending.odom_T_body, pending.path_m, &submap_) != Status::kOk) ++counters_.submaps_truncated;
-  out.submap_points = submap_.points.size();
-  if (describer_.Describe(submap_, &out.place) != Status::kOk) {
-    ++counters_.undescribed;
-    out.place = {};
+void AgentPipeline::ReleaseStep() {
+  switch (release_stage_) {
+    case ReleaseStage::kCut: {
+      const PendingKeyframe& pending = pending_.front();
+      release_ = {};
+      release_.index = pending.index;
+      release_.t = pending.t;
+      release_.odom_T_body = pending.odom_T_body;
+      release_.path_m = pending.path_m;
+      release_.flushed = !Due(0);
+      submap_.keyframe = pending.index;
+      submap_.t = pending.t;
+      submap_.flushed = release_.flushed;
+      const Status cut = rolling_map_.Extract(pending.odom_T_body, pending.path_m, &submap_);
+      if (cut != Status::kOk) ++counters_.submaps_truncated;
+      release_.submap_points = submap_.points.size();
+      release_stage_ = ReleaseStage::kDescribe;
+      return;
+    }
+    case ReleaseStage::kDescribe:
+      if (describer_.Describe(submap_, &release_.place) != Status::kOk) {
+        ++counters_.undescribed;
+        release_.place = {};
+      }
+      release_stage_ = ReleaseStage::kEncode;
+      return;
+    case ReleaseStage::kEncode: {
+      const Result<std::size_t> bytes = encoder_.Encode(submap_, encoded_);
+      if (bytes.ok()) release_.encoded = {encoded_.data(), bytes.value()};
+      ++counters_.keyframes;
+      pending_.PopFront();
+      release_stage_ = ReleaseStage::kCut;
+      sink_->OnKeyframe(release_);
+      return;
+    }
   }
-  const Result<std::size_t> bytes = submap::EncodeSubmap(submap_, encoded_);
-  if (bytes.ok()) out.encoded = {encoded_.data(), bytes.value()};
-  ++counters_.keyframes;
-  sink_->OnKeyframe(out);
 }
 
 }  // namespace mapweld::pipeline

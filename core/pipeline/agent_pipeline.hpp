@@ -16,6 +16,7 @@
 #include "core/sensor/lidar_packet.hpp"
 #include "core/submap/rolling_map.hpp"
 #include "core/submap/submap.hpp"
+#include "core/submap/submap_codec.hpp"
 
 namespace mapweld::pipeline {
 
@@ -98,8 +99,9 @@ class AgentPipeline {
   void OnScan(const sensor::Scan& scan);
   void FeedSubmaps();
   void TakeKeyframeIfDue(const lio::LioUpdate& update);
-  void ReleaseKeyframes(bool all);
-  void Release(const PendingKeyframe& pending, bool flushed);
+  [[nodiscard]] bool Due(std::size_t pending) const;
+  void ReleaseDueKeyframes();
+  void ReleaseStep();
 
   AgentConfig config_;
   AgentSink* sink_;
@@ -114,13 +116,19 @@ class AgentPipeline {
   geom::Pose3 last_odom_T_body_;
   double path_m_ = 0;
 
+  // The oldest pending keyframe on its way out. One step a scan, so that no scan pays for all of them.
+  enum class ReleaseStage { kCut, kDescribe, kEncode };
+
   submap::RollingMap rolling_map_;
   RingBuffer<PendingKeyframe, kCap.pending_keyframes> pending_;
   std::int32_t next_keyframe_ = 0;
   double next_keyframe_path_m_ = 0;
 
+  ReleaseStage release_stage_ = ReleaseStage::kCut;
+  KeyframeOutput release_;
   place::Describer describer_;
   submap::Submap submap_;
+  submap::SubmapEncoder encoder_;
   std::array<std::uint8_t, kCap.submap_encoded_bytes> encoded_{};
 
   correct::LocalCorrection correction_;

@@ -5,28 +5,13 @@
 #include <cmath>
 
 #include "core/base/voxel_key.hpp"
+#include "core/submap/submap_grid.hpp"
 
 namespace mapweld::submap {
 namespace {
 
 constexpr float kOffsetSteps = 1024.0F;
 constexpr std::uint32_t kMaxCount = 65535;
-
-// Order in which points are stored: z, then y, then x of the 0.5 m cell in the level frame.
-struct ByCell {
-  float inverse_voxel;
-  [[nodiscard]] std::uint64_t Key(const SubmapPoint& p) const {
-    return PackCell({CellIndex(p.x * inverse_voxel), CellIndex(p.y * inverse_voxel), CellIndex(p.z * inverse_voxel)});
-  }
-  bool operator()(const SubmapPoint& a, const SubmapPoint& b) const {
-    const std::uint64_t ka = Key(a);
-    const std::uint64_t kb = Key(b);
-    if (ka != kb) return ka < kb;
-    if (a.z != b.z) return a.z < b.z;
-    if (a.y != b.y) return a.y < b.y;
-    return a.x < b.x;
-  }
-};
 
 }  // namespace
 
@@ -65,36 +50,69 @@ Status RollingMap::Insert(const Eigen::Vector3f& p_odom, double path_m) {
   return Status::kOk;
 }
 
-Status RollingMap::Extract(const geom::Pose3& odom_T_body, double path_m, Submap* submap) const {
+// The mean of a voxel's returns in the submap's frame.
+SubmapPoint RollingMap::PointOf(const Voxel& voxel, const Eigen::Matrix3d& level_R_odom,
+                                const geom::Vec3d& level_t_odom) const {
+  const Cell cell = UnpackCell(voxel.key);
+  const auto to_m = static_cast<double>(config_.voxel_m);
+  const double per_count = 1.0 / (static_cast<double>(kOffsetSteps) * voxel.count);
+  const geom::Vec3d mean_odom((cell.x + voxel.sum[0] * per_count) * to_m, (cell.y + voxel.sum[1] * per_count) * to_m,
+                              (cell.z + voxel.sum[2] * per_count) * to_m);
+  const Eigen::Vector3f p = (level_R_odom * mean_odom + level_t_odom).cast<float>();
+  return {p.x(), p.y(), p.z(), static_cast<std::uint16_t>(voxel.count), 0};
+}
+
+// Radix sort by cell, 8 bits at a time; the voxels of one cell by their own keys, so that the order does not depend on
+// where the hash put them.
+void RollingMap::SortFound() {
+  for (unsigned shift = 0; shift < 24; shift += 8) {
+    std::array<std::uint32_t, 257> begin{};
+    for (const Found& found : found_) ++begin[((found.cell >> shift) & 0xFFU) + 1];
+    for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    sorted_.resize(found_.size());
+    for (const Found& found : found_) sorted_[begin[(found.cell >> shift) & 0xFFU]++] = found;
+    std::copy(sorted_.begin(), sorted_.end(), found_.begin());
+  }
+  for (std::size_t i = 1; i < found_.size(); ++i) {
+    for (std::size_t k = i; k > 0 && found_[k - 1].cell == found_[k].cell &&
+                            voxels_[found_[k].voxel].key < voxels_[found_[k - 1].voxel].key;
+         --k) {
+      std::swap(found_[k - 1], found_[k]);
+    }
+  }
+}
+
+Status RollingMap::Extract(const geom::Pose3& odom_T_body, double path_m, Submap* submap) {
   const geom::Pose3 level_T_odom = geom::Level(odom_T_body).Inverse();
   const Eigen::Matrix3d level_R_odom = level_T_odom.q.toRotationMatrix();
-  const double radius_squared = static_cast<double>(config_.radius_m) * static_cast<double>(config_.radius_m);
-  const double seen_from = (path_m - config_.reach_m) * 10.0;
-  const double seen_to = (path_m + config_.reach_m) * 10.0;
+  const auto seen_from = static_cast<std::uint32_t>(std::max(0.0, (path_m - config_.reach_m) * 10.0));
+  const auto seen_to = static_cast<std::uint32_t>((path_m + config_.reach_m) * 10.0);
 
   submap->voxel_m = config_.voxel_m;
   submap->radius_m = config_.radius_m;
   submap->points.clear();
+  found_.clear();
+  const geom::Vec3d centre = odom_T_body.t / static_cast<double>(config_.voxel_m);
+  const auto reach = static_cast<double>(config_.radius_m / config_.voxel_m) + 2;
   Status status = Status::kOk;
-  for (const Voxel& voxel : voxels_) {
-    if (voxel.key == 0) continue;
-    const double seen = static_cast<double>(voxel.seen_dm);
-    if (seen < seen_from || seen > seen_to) continue;
+  for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
+    const Voxel& voxel = voxels_[i];
+    if (voxel.key == 0 || voxel.seen_dm < seen_from || voxel.seen_dm > seen_to) continue;
     const Cell cell = UnpackCell(voxel.key);
-    const double to_m = static_cast<double>(config_.voxel_m);
-    const double per_count = 1.0 / (static_cast<double>(kOffsetSteps) * voxel.count);
-    const Eigen::Vector3d mean_odom((cell.x + voxel.sum[0] * per_count) * to_m,
-                                    (cell.y + voxel.sum[1] * per_count) * to_m,
-                                    (cell.z + voxel.sum[2] * per_count) * to_m);
-    if ((mean_odom - odom_T_body.t).squaredNorm() > radius_squared) continue;
-    const Eigen::Vector3f p = (level_R_odom * mean_odom + level_T_odom.t).cast<float>();
-    const SubmapPoint point{p.x(), p.y(), p.z(), static_cast<std::uint16_t>(voxel.count), 0};
-    if (submap->points.TryPush(point) != Status::kOk) {
+    if (std::abs(cell.x - centre.x()) > reach || std::abs(cell.y - centre.y()) > reach) continue;
+    const SubmapPoint point = PointOf(voxel, level_R_odom, level_T_odom.t);
+    if (point.x * point.x + point.y * point.y + point.z * point.z > config_.radius_m * config_.radius_m) continue;
+    Found found{0, i};
+    if (!CellKey(point, config_.voxel_m, &found.cell)) continue;
+    if (found_.TryPush(found) != Status::kOk) {
       status = Status::kFull;
       break;
     }
   }
-  std::sort(submap->points.begin(), submap->points.end(), ByCell{1.0F / config_.voxel_m});
+  SortFound();
+  for (const Found& found : found_) {
+    (void)submap->points.TryPush(PointOf(voxels_[found.voxel], level_R_odom, level_T_odom.t));  // same capacity
+  }
   return status;
 }
 

@@ -29,9 +29,10 @@ class RollingMap {
   // Adds one point in the odom frame, seen after path_m of travel. Points beyond +-500 km of the origin are refused.
   Status Insert(const Eigen::Vector3f& p_odom, double path_m);
 
-  // Cuts the submap of the keyframe at odom_T_body. One pass over the table and a sort of the points found. When more
-  // than kCap.submap_points voxels lie within the radius the ones beyond the capacity are left out: kFull.
-  Status Extract(const geom::Pose3& odom_T_body, double path_m, Submap* submap) const;
+  // Cuts the submap of the keyframe at odom_T_body. One pass over the table and three over the points found, which come
+  // out along the Z-order curve of their cells. When more than kCap.submap_points voxels lie within the radius the ones
+  // beyond the capacity are left out: kFull.
+  Status Extract(const geom::Pose3& odom_T_body, double path_m, Submap* submap);
 
   [[nodiscard]] std::uint64_t evicted() const { return evicted_; }
 
@@ -46,8 +47,21 @@ class RollingMap {
   };
   static_assert(sizeof(Voxel) == 32);
 
+  // A voxel within the submap, to be sorted.
+  struct Found {
+    std::uint32_t cell = 0;   // CellKey in the submap's frame
+    std::uint32_t voxel = 0;  // index into voxels_
+  };
+  using FoundVoxels = FixedVector<Found, kCap.submap_points>;
+
+  [[nodiscard]] SubmapPoint PointOf(const Voxel& voxel, const Eigen::Matrix3d& level_R_odom,
+                                    const geom::Vec3d& level_t_odom) const;
+  void SortFound();
+
   RollingMapConfig config_;
   std::uint64_t evicted_ = 0;
+  FoundVoxels found_;
+  FoundVoxels sorted_;
   std::array<Voxel, kCap.submap_map_voxels> voxels_{};
 };
 

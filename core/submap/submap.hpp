@@ -27,7 +27,7 @@ struct Submap {
   float voxel_m = 0.5F;
   float radius_m = 50.0F;
   bool flushed = false;  // the drive ended before the vehicle was release_distance_m past the keyframe
-  FixedVector<SubmapPoint, kCap.submap_points> points;  // ordered by voxel, the same for the same set
+  FixedVector<SubmapPoint, kCap.submap_points> points;  // along the Z-order curve of the cells
 };
 
 }  // namespace mapweld::submap

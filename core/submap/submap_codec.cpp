@@ -6,51 +6,143 @@
 
 #include "core/base/byte_io.hpp"
 #include "core/base/crc32.hpp"
+#include "core/submap/submap_models.hpp"
 
 namespace mapweld::submap {
 namespace {
 
-// header | n x (varint: cells since the last point, u16: x5 y5 z5 seen-more-than-once1) | CRC-32 of all before
-constexpr std::uint32_t kMagic = 0x314D534D;  // "MSM1"
+// header | range-coded octree | CRC-32 of all before
+constexpr std::uint32_t kMagic = 0x324D534D;  // "MSM2"
 constexpr std::size_t kHeaderBytes = 4 + 1 + 2 + 2 + 4 + 8 + 4;
 constexpr std::size_t kCrcBytes = 4;
-constexpr std::int32_t kHalfExtent = 128;  // cells run from -128 to 127 on each axis
-constexpr float kSteps = 32.0F;
+constexpr auto kSteps = static_cast<float>(1U << kStepBits);
 
-struct GridPoint {
-  std::uint32_t cell = 0;  // z, y, x, 8 bits each
-  std::uint16_t offset = 0;
+// A node on the way down the octree. Level 8 is the root; a child of a level-1 node is a cell.
+struct Node {
+  std::uint8_t mask = 0;  // occupied children
+  std::uint8_t next = 0;  // child to visit next
 };
 
-bool ToGrid(const SubmapPoint& p, float voxel_m, GridPoint* out) {
+CellContent ToContent(const SubmapPoint& p, float voxel_m) {
   const float v[3] = {p.x / voxel_m, p.y / voxel_m, p.z / voxel_m};
-  std::uint32_t cell = 0;
-  std::uint32_t offset = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    if (!(v[axis] >= static_cast<float>(-kHalfExtent) && v[axis] < static_cast<float>(kHalfExtent))) return false;
-    const float floor_v = std::floor(v[axis]);
-    const auto step = std::min(static_cast<std::uint32_t>((v[axis] - floor_v) * kSteps), 31U);
-    cell = (cell << 8U) | static_cast<std::uint32_t>(static_cast<std::int32_t>(floor_v) + kHalfExtent);
-    offset = (offset << 5U) | step;
+  CellContent content;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const float step = (v[axis] - std::floor(v[axis])) * kSteps;
+    content.step[axis] = static_cast<std::uint8_t>(std::min(step, kSteps - 1));
   }
-  out->cell = cell;
-  out->offset = static_cast<std::uint16_t>((offset << 1U) | (p.count > 1 ? 1U : 0U));
-  return true;
+  content.seen_again = p.count > 1;
+  return content;
 }
 
-SubmapPoint FromGrid(const GridPoint& g, float voxel_m) {
+SubmapPoint FromContent(std::uint32_t key, const CellContent& content, float voxel_m) {
   float v[3];
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::int32_t>((g.cell >> (8U * axis)) & 0xFFU) - kHalfExtent;
-    const auto step = static_cast<float>((g.offset >> (1U + 5U * axis)) & 31U);
-    v[axis] = (static_cast<float>(cell) + (step + 0.5F) / kSteps) * voxel_m;
+    const auto cell = static_cast<std::int32_t>(GatherBits(key >> axis)) - kHalfExtent;
+    v[axis] = (static_cast<float>(cell) + (static_cast<float>(content.step[axis]) + 0.5F) / kSteps) * voxel_m;
   }
-  return {v[0], v[1], v[2], static_cast<std::uint16_t>(1U + (g.offset & 1U)), 0};
+  return {v[0], v[1], v[2], static_cast<std::uint16_t>(content.seen_again ? 2 : 1), 0};
 }
+
+// Goes through the occupied cells in order, the same way for encoder and decoder. The side supplies:
+//   Mask(level)                 the occupied children of the node that holds the next point; the decoder knows none
+//   Content(), More(key)        the next point; does another one lie in this cell?
+//   operator()(bit, model), Even(value, bits)   code and give what holds, see submap_models.hpp
+//   Take(key, content)          one point is coded
+template <class Side>
+Status WalkOctree(SubmapModels* models, Side* side) {
+  std::array<Node, kGridLevels> path;
+  std::uint32_t key = 0;
+  unsigned depth = 0;
+  path[0] = {CodeMask(side->Mask(kGridLevels), &models->occupied[kGridLevels - 1][0], *side), 0};
+  CodedBlock block;
+  while (true) {
+    Node& node = path[depth];
+    if (node.next == 8) {
+      if (depth == 0) return Status::kOk;
+      --depth;
+      key >>= 3U;
+      continue;
+    }
+    const unsigned child = node.next++;
+    if (((node.mask >> child) & 1U) == 0) continue;
+    if (depth + 1 < kGridLevels) {
+      const unsigned level = kGridLevels - 1 - depth;
+      auto& model = models->occupied[level - 1][NeighboursInParent(node.mask, child)];
+      path[++depth] = {CodeMask(side->Mask(level), &model, *side), 0};
+      key = (key << 3U) | child;
+      if (depth + 1 == kGridLevels) block.Clear();
+      continue;
+    }
+    const std::uint32_t cell = (key << 3U) | child;
+    for (bool more = true, first = true; more; first = false) {
+      const CellContent content = CodeContent(side->Content(), child, block, models, *side);
+      const Status status = side->Take(cell, content);
+      if (status != Status::kOk) return status;
+      block.Add(child, content);
+      more = (*side)(side->More(cell), &models->more[first ? 0 : 1]);
+    }
+  }
+}
+
+class EncoderSide {
+ public:
+  EncoderSide(const Submap& submap, std::span<const std::uint32_t> keys, RangeEncoder* coder)
+      : submap_(submap), keys_(keys), coder_(coder) {}
+
+  bool operator()(bool bit, BitModel* model) const {
+    coder_->Put(bit, model);
+    return bit;
+  }
+  std::uint32_t Even(std::uint32_t value, unsigned bits) const {
+    coder_->PutEven(value, bits);
+    return value;
+  }
+  [[nodiscard]] std::uint8_t Mask(unsigned level) const {
+    const unsigned shift = 3 * level;
+    unsigned mask = 0;
+    for (std::size_t i = next_; i < keys_.size() && keys_[i] >> shift == keys_[next_] >> shift; ++i) {
+      mask |= 1U << ((keys_[i] >> (shift - 3)) & 7U);
+    }
+    return static_cast<std::uint8_t>(mask);
+  }
+  [[nodiscard]] CellContent Content() const { return ToContent(submap_.points[next_], submap_.voxel_m); }
+  [[nodiscard]] bool More(std::uint32_t cell) const { return next_ < keys_.size() && keys_[next_] == cell; }
+  Status Take(std::uint32_t, const CellContent&) {
+    ++next_;
+    return Status::kOk;
+  }
+
+ private:
+  const Submap& submap_;
+  std::span<const std::uint32_t> keys_;
+  RangeEncoder* coder_;
+  std::size_t next_ = 0;
+};
+
+class DecoderSide {
+ public:
+  DecoderSide(std::size_t points, RangeDecoder* coder, Submap* submap)
+      : points_(points), coder_(coder), submap_(submap) {}
+
+  bool operator()(bool, BitModel* model) const { return coder_->Get(model); }
+  std::uint32_t Even(std::uint32_t, unsigned bits) const { return coder_->GetEven(bits); }
+  [[nodiscard]] std::uint8_t Mask(unsigned) const { return 0; }
+  [[nodiscard]] CellContent Content() const { return {}; }
+  [[nodiscard]] bool More(std::uint32_t) const { return false; }
+  Status Take(std::uint32_t cell, const CellContent& content) {
+    if (submap_->points.size() == points_ || coder_->failed()) return Status::kBadInput;
+    return submap_->points.TryPush(FromContent(cell, content, submap_->voxel_m));
+  }
+
+ private:
+  std::size_t points_;
+  RangeDecoder* coder_;
+  Submap* submap_;
+};
 
 }  // namespace
 
-Result<std::size_t> EncodeSubmap(const Submap& submap, std::span<std::uint8_t> out) {
+Result<std::size_t> SubmapEncoder::Encode(const Submap& submap, std::span<std::uint8_t> out) {
   ByteWriter writer(out);
   writer.Little(kMagic);
   writer.Little(static_cast<std::uint8_t>(submap.flushed ? 1 : 0));
@@ -59,24 +151,24 @@ Result<std::size_t> EncodeSubmap(const Submap& submap, std::span<std::uint8_t> o
   writer.Little(submap.keyframe);
   writer.Little(submap.t.ns);
   writer.Little(static_cast<std::uint32_t>(submap.points.size()));
-  std::uint32_t previous = 0;
-  for (const SubmapPoint& point : submap.points) {
-    GridPoint g;
-    if (!ToGrid(point, submap.voxel_m, &g)) return Status::kOutOfRange;
-    if (g.cell < previous) return Status::kBadInput;
-    std::uint32_t delta = g.cell - previous;
-    previous = g.cell;
-    while (delta >= 0x80U) {
-      writer.Little(static_cast<std::uint8_t>(delta | 0x80U));
-      delta >>= 7U;
+  if (writer.failed()) return Status::kFull;
+  std::size_t size = writer.size();
+  if (!submap.points.empty()) {
+    for (std::size_t i = 0; i < submap.points.size(); ++i) {
+      if (!CellKey(submap.points[i], submap.voxel_m, &keys_[i])) return Status::kOutOfRange;
+      if (i > 0 && keys_[i] < keys_[i - 1]) return Status::kBadInput;
     }
-    writer.Little(static_cast<std::uint8_t>(delta));
-    writer.Little(g.offset);
+    models_ = {};
+    RangeEncoder coder(out.subspan(size));
+    EncoderSide side(submap, std::span(keys_).first(submap.points.size()), &coder);
+    (void)WalkOctree(&models_, &side);  // cannot fail
+    size += coder.Finish();
+    if (coder.failed()) return Status::kFull;
   }
-  if (writer.failed()) return Status::kFull;
-  writer.Little(Crc32(writer.written()));
-  if (writer.failed()) return Status::kFull;
-  return writer.size();
+  ByteWriter crc(out.subspan(size));
+  crc.Little(Crc32(out.first(size)));
+  if (crc.failed()) return Status::kFull;
+  return size + kCrcBytes;
 }
 
 Status DecodeSubmap(std::span<const std::uint8_t> bytes, Submap* submap) {
@@ -97,24 +189,16 @@ Status DecodeSubmap(std::span<const std::uint8_t> bytes, Submap* submap) {
   submap->flushed = flags == 1;
   submap->voxel_m = static_cast<float>(voxel_mm) * 0.001F;
   submap->radius_m = static_cast<float>(radius_cm) * 0.01F;
+  const auto coded = body.subspan(kHeaderBytes);
+  if (n == 0) return coded.empty() ? Status::kOk : Status::kBadInput;
 
-  GridPoint g;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    std::uint32_t delta = 0;
-    for (unsigned shift = 0;; shift += 7) {
-      const auto byte = reader.Little<std::uint8_t>();
-      if (shift > 21 || reader.failed()) return Status::kBadInput;
-      delta |= static_cast<std::uint32_t>(byte & 0x7FU) << shift;
-      if ((byte & 0x80U) == 0) break;
-    }
-    g.cell += delta;
-    if (g.cell >= (1U << 24U)) return Status::kBadInput;
-    g.offset = reader.Little<std::uint16_t>();
-    if (reader.failed()) return Status::kBadInput;
-    const Status pushed = submap->points.TryPush(FromGrid(g, submap->voxel_m));
-    if (pushed != Status::kOk) return pushed;
-  }
-  return reader.remaining() == 0 ? Status::kOk : Status::kBadInput;
+  SubmapModels models;
+  RangeDecoder coder(coded);
+  DecoderSide side(n, &coder, submap);
+  const Status status = WalkOctree(&models, &side);
+  if (status != Status::kOk) return status;
+  const bool whole = submap->points.size() == n && !coder.failed() && coder.read() == coded.size();
+  return whole ? Status::kOk : Status::kBadInput;
 }
 
 }  // namespace mapweld::submap

@@ -19,6 +19,7 @@
 #include "drivers/time/monotonic_clock.hpp"
 #include "firmware-like/answer_queue.hpp"
 #include "firmware-like/telemetry.hpp"
+#include "tests/support/sort_points.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tools/serve/requester.hpp"
 
@@ -147,7 +148,8 @@ class SmallAgent {
             {.x = 0.5F * static_cast<float>(y), .y = 0.5F * static_cast<float>(x), .z = 0.1F, .count = 1});
       }
     }
-    const auto bytes = submap::EncodeSubmap(*submap_, encoded_);
+    test::SortPoints(submap_.get());
+    const auto bytes = std::make_unique<submap::SubmapEncoder>()->Encode(*submap_, encoded_);
     encoded_.resize(bytes.ok() ? bytes.value() : 0);
     good_ = good_ && bytes.ok();
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The input is an encoded submap. It is decoded as it is, and once more with the checksum at its end made right.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -12,6 +13,7 @@ namespace mapweld::fuzz {
 
 std::vector<Bytes> Seeds() {
   auto submap = std::make_unique<submap::Submap>();
+  auto encoder = std::make_unique<submap::SubmapEncoder>();
   submap->keyframe = 5;
   submap->t = {123'456'789};
   std::vector<Bytes> out;
@@ -27,8 +29,14 @@ std::vector<Bytes> Seeds() {
         }
       }
     }
+    std::sort(submap->points.begin(), submap->points.end(), [&](const auto& a, const auto& b) {
+      std::uint32_t key_a = 0;
+      std::uint32_t key_b = 0;
+      FUZZ_REQUIRE(submap::CellKey(a, submap->voxel_m, &key_a) && submap::CellKey(b, submap->voxel_m, &key_b));
+      return key_a < key_b;
+    });
     Bytes bytes(8192);
-    const Result<std::size_t> n = submap::EncodeSubmap(*submap, bytes);
+    const Result<std::size_t> n = encoder->Encode(*submap, bytes);
     FUZZ_REQUIRE(n.ok());
     bytes.resize(n.value());
     out.push_back(bytes);

@@ -77,6 +77,7 @@ sensor::ImuSample StreetDrive::Imu(double t_s) {
   sample.gyro_body = geom::LogSo3((before.q.conjugate() * after.q).normalized()) / (2 * h);
   sample.accel_body = now.q.conjugate() * ((after.t - 2 * now.t + before.t) / (h * h) + geom::Vec3d(0, 0, 9.81));
   sample.gyro_body.z() += config_.gyro_bias_z + 0.002 * Noise();
+  sample.accel_body.y() += config_.accel_bias_y;
   sample.accel_body.z() += config_.accel_bias_z + 0.02 * Noise();
   return sample;
 }

@@ -17,7 +17,8 @@ struct StreetDriveConfig {
   double weave_m = 1.5;  // lateral amplitude
   double range_noise_m = 0.02;
   double imu_hz = 200;
-  double accel_bias_z = 0.05;  // m/s^2; a horizontal one would be taken for a tilt at the start
+  double accel_bias_z = 0.05;  // m/s^2
+  double accel_bias_y = 0;     // taken for a tilt at the start
   double gyro_bias_z = 0.002;  // rad/s
   bool corridor = false;       // endless smooth walls: nothing fixes the position along the street
   double imu_gap_from_s = -1;  // no IMU samples in this interval

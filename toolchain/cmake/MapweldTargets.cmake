@@ -78,7 +78,7 @@ function(mapweld_test source)
   target_link_libraries(${name} PRIVATE mapweld_flags ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} ${ARG_ARGS})
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
+    set(ARG_TIMEOUT 600)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
                                           SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] [0-9]+ test, listed below:.*PASSED  \\] 0 tests")

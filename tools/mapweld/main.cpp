@@ -8,6 +8,7 @@
 
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
+#include "tools/odometry/odometry_command.hpp"
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   mapweld::eval::AddEvalCommand(app);
   mapweld::sim::AddSimCommand(app);
   mapweld::replay::AddReplayCommand(app);
+  mapweld::odometry::AddOdometryCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

@@ -102,7 +102,7 @@ class Publisher {
     place::PlaceDescription place;
     if (describer_->Describe(*submap_, &place) != Status::kOk) place = {};
     std::vector<std::uint8_t> encoded(kCap.submap_encoded_bytes);
-    const Result<std::size_t> bytes = submap::EncodeSubmap(*submap_, encoded);
+    const Result<std::size_t> bytes = encoder_->Encode(*submap_, encoded);
     encoded.resize(bytes.ok() ? bytes.value() : 0);
     WriteKeyframe(now, pending, flushed, place, encoded.size());
     WriteChunks(now, pending.index, encoded);
@@ -158,6 +158,7 @@ class Publisher {
   std::deque<Pending> pending_;
   std::unique_ptr<submap::RollingMap> map_ = std::make_unique<submap::RollingMap>();
   std::unique_ptr<submap::Submap> submap_ = std::make_unique<submap::Submap>();
+  std::unique_ptr<submap::SubmapEncoder> encoder_ = std::make_unique<submap::SubmapEncoder>();
   std::unique_ptr<place::Describer> describer_ = std::make_unique<place::Describer>();
 };
 

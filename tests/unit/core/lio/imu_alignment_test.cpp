@@ -13,31 +13,44 @@ sensor::ImuSample At(int i, const geom::Vec3d& gyro, const geom::Vec3d& accel) {
 }
 
 TEST(ImuAlignment, FindsDownAndTheGyroOffsetAtRest) {
-  const geom::Quatd odom_R_body(Eigen::AngleAxisd(0.05, geom::Vec3d::UnitY()) *
-                                Eigen::AngleAxisd(-0.1, geom::Vec3d::UnitX()));
-  const geom::Vec3d accel = odom_R_body.conjugate() * geom::Vec3d(0, 0, 9.79);
+  const geom::Quatd local_R_body(Eigen::AngleAxisd(0.05, geom::Vec3d::UnitY()) *
+                                 Eigen::AngleAxisd(-0.1, geom::Vec3d::UnitX()));
+  const geom::Vec3d accel = local_R_body.conjugate() * geom::Vec3d(0, 0, 9.79);
   ImuAlignment alignment;
   Status status = Status::kNotReady;
   for (int i = 0; status == Status::kNotReady && i < 1000; ++i) {
     status = alignment.Add(At(i, {0.001, -0.002, 0.003}, accel));
   }
   ASSERT_EQ(status, Status::kOk);
-  EXPECT_LT(alignment.alignment().odom_R_body.angularDistance(odom_R_body), 2e-3);
+  EXPECT_LT(alignment.alignment().local_R_body.angularDistance(local_R_body), 2e-3);
   EXPECT_NEAR(alignment.alignment().gyro_bias.z(), 0.003, 1e-9);
   EXPECT_NEAR(alignment.alignment().gravity_m_s2, 9.79, 1e-9);
-  EXPECT_NEAR(geom::Yaw(alignment.alignment().odom_R_body), 0, 1e-12);
+  EXPECT_NEAR(geom::Yaw(alignment.alignment().local_R_body), 0, 1e-12);
 }
 
-TEST(ImuAlignment, WaitsWhileTheVehicleMoves) {
+TEST(ImuAlignment, WaitsSomeSecondsForTheVehicleToStop) {
   ImuAlignment alignment;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 900; ++i) {
     const double wobble = std::sin(0.05 * i);
     ASSERT_EQ(alignment.Add(At(i, {0, 0, 0.3 * wobble}, {wobble, 0, 9.81})), Status::kNotReady);
   }
   Status status = Status::kNotReady;
-  for (int i = 2000; status == Status::kNotReady && i < 3000; ++i)
+  for (int i = 900; status == Status::kNotReady && i < 3000; ++i)
     status = alignment.Add(At(i, {0, 0, 0}, {0, 0, 9.81}));
   EXPECT_EQ(status, Status::kOk);
+  EXPECT_FALSE(alignment.alignment().moving);
+}
+
+TEST(ImuAlignment, StartsInMotionWhenItNeverStops) {
+  ImuAlignment alignment;
+  Status status = Status::kNotReady;
+  for (int i = 0; status == Status::kNotReady && i < 3000; ++i) {
+    const double wobble = std::sin(0.05 * i);
+    status = alignment.Add(At(i, {0, 0, 0.3 * wobble}, {wobble, 0, 9.81}));
+  }
+  ASSERT_EQ(status, Status::kOk);
+  EXPECT_TRUE(alignment.alignment().moving);
+  EXPECT_LT(alignment.alignment().local_R_body.angularDistance(geom::Quatd::Identity()), 0.02);
 }
 
 TEST(ImuAlignment, RefusesAnAccelerometerThatDoesNotMeasureGravity) {
@@ -45,6 +58,13 @@ TEST(ImuAlignment, RefusesAnAccelerometerThatDoesNotMeasureGravity) {
   bool refused = false;
   for (int i = 0; i < 400; ++i) refused |= alignment.Add(At(i, {0, 0, 0}, {0, 0, 1.0})) == Status::kOutOfRange;
   EXPECT_TRUE(refused);
+}
+
+TEST(ImuAlignment, RefusesAnAccelerometerThatHangsUpsideDownOrOnItsSide) {
+  for (const geom::Vec3d& force : {geom::Vec3d(0, 0, -9.81), geom::Vec3d(9.81, 0, 0)}) {
+    ImuAlignment alignment;
+    for (int i = 0; i < 3000; ++i) ASSERT_NE(alignment.Add(At(i, {0, 0, 0}, force)), Status::kOk);
+  }
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace {
 
 InertialState SomeState() {
   InertialState s;
-  s.odom_T_body = {{1, 2, 3}, geom::ExpSo3({0.1, -0.2, 0.7})};
-  s.v_odom = {3, -1, 0.2};
+  s.local_T_body = {{1, 2, 3}, geom::ExpSo3({0.1, -0.2, 0.7})};
+  s.v_local = {3, -1, 0.2};
   s.gyro_bias = {0.01, -0.02, 0.005};
   s.accel_bias = {0.1, 0.05, -0.08};
   return s;
@@ -27,22 +27,22 @@ TEST(InertialState, RetractUndoesLocalCoordinates) {
 TEST(InertialState, StaysPutUnderGravityAlone) {
   InertialState s;
   ErrorMatrix p = ErrorMatrix::Identity() * 1e-6;
-  for (int i = 0; i < 1000; ++i) Propagate({0, 0, 0}, {0, 0, 9.81}, 0.005, 9.81, {}, &s, &p);
-  EXPECT_LT(s.odom_T_body.t.norm(), 1e-9);
-  EXPECT_LT(s.v_odom.norm(), 1e-9);
+  for (int i = 0; i < 1000; ++i) Propagate({0, 0, 0}, {0, 0, 9.81}, 0.005, {}, &s, &p);
+  EXPECT_LT(s.local_T_body.t.norm(), 1e-9);
+  EXPECT_LT(s.v_local.norm(), 1e-9);
 }
 
 TEST(InertialState, PropagatesACircle) {
   // 10 m/s on a radius of 20 m: one turn later it is back.
   const double omega = 0.5;
   InertialState s;
-  s.v_odom = {10, 0, 0};
+  s.v_local = {10, 0, 0};
   ErrorMatrix p = ErrorMatrix::Identity() * 1e-6;
   const double turn_s = 2 * 3.14159265358979 / omega;
   const int n = 5000;
-  for (int i = 0; i < n; ++i) Propagate({0, 0, omega}, {0, 10 * omega, 9.81}, turn_s / n, 9.81, {}, &s, &p);
-  EXPECT_LT(s.odom_T_body.t.norm(), 1e-3);
-  EXPECT_LT((s.v_odom - geom::Vec3d(10, 0, 0)).norm(), 1e-3);
+  for (int i = 0; i < n; ++i) Propagate({0, 0, omega}, {0, 10 * omega, 9.81}, turn_s / n, {}, &s, &p);
+  EXPECT_LT(s.local_T_body.t.norm(), 1e-3);
+  EXPECT_LT((s.v_local - geom::Vec3d(10, 0, 0)).norm(), 1e-3);
 }
 
 TEST(InertialState, CovarianceFollowsTheNumericJacobian) {
@@ -52,7 +52,7 @@ TEST(InertialState, CovarianceFollowsTheNumericJacobian) {
   const double dt = 0.005;
   const auto step = [&](InertialState s) {
     ErrorMatrix unused = ErrorMatrix::Zero();
-    Propagate(gyro, accel, dt, 9.81, {}, &s, &unused);
+    Propagate(gyro, accel, dt, {}, &s, &unused);
     return s;
   };
   Eigen::Matrix<double, kErrorDim, kErrorDim> f;
@@ -65,9 +65,18 @@ TEST(InertialState, CovarianceFollowsTheNumericJacobian) {
   const ErrorMatrix p0 = sigma.cwiseProduct(sigma).asDiagonal();
   ErrorMatrix p = p0;
   InertialState s = s0;
-  ImuNoise silent{0, 0, 0, 0};
-  Propagate(gyro, accel, dt, 9.81, silent, &s, &p);
+  ImuNoise silent{0, 0, 0, 0, 0};
+  Propagate(gyro, accel, dt, silent, &s, &p);
   EXPECT_LT((p - f * p0 * f.transpose()).norm() / p.norm(), 1e-4);
+}
+
+TEST(InertialState, CoastingGoesOnTurningAtTheLastKnownRate) {
+  InertialState s;
+  s.v_local = {2, 0, 0};
+  ErrorMatrix p = ErrorMatrix::Identity() * 1e-6;
+  for (int i = 0; i < 100; ++i) Coast({0, 0, 0.5}, 0.01, &s, &p);
+  EXPECT_NEAR(geom::Yaw(s.local_T_body.q), 0.5, 1e-9);
+  EXPECT_NEAR(s.local_T_body.t.x(), 2, 1e-9);
 }
 
 TEST(InertialState, CoastingGrowsTheUncertaintyMuchFasterThanMeasuring) {
@@ -76,8 +85,8 @@ TEST(InertialState, CoastingGrowsTheUncertaintyMuchFasterThanMeasuring) {
   ErrorMatrix pa = ErrorMatrix::Identity() * 1e-6;
   ErrorMatrix pb = pa;
   for (int i = 0; i < 200; ++i) {
-    Propagate({0, 0, 0}, {0, 0, 9.81}, 0.005, 9.81, {}, &a, &pa);
-    Coast(0.005, &b, &pb);
+    Propagate({0, 0, 0}, {0, 0, 9.81}, 0.005, {}, &a, &pa);
+    Coast({0, 0, 0}, 0.005, &b, &pb);
   }
   EXPECT_GT(pb(0, 0), 100 * pa(0, 0));
 }

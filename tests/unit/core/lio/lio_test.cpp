@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "core/scan/scan_accumulator.hpp"
 #include "tests/support/street_drive.hpp"
@@ -15,7 +16,8 @@ namespace {
 // Drives a street; gives the last update and remembers the worst position error.
 class LioDrive {
  public:
-  explicit LioDrive(const test::StreetDriveConfig& config) : street_(std::make_unique<test::StreetDrive>(config)) {}
+  explicit LioDrive(const test::StreetDriveConfig& config, const LioConfig& lio = {})
+      : street_(std::make_unique<test::StreetDrive>(config)), lio_(std::make_unique<Lio>(lio)) {}
 
   void Run() {
     sensor::LidarPacket packet;
@@ -34,7 +36,11 @@ class LioDrive {
   }
 
   void Record() {
-    const geom::Pose3 truth = street_->TruthAt(update_.t);
+    if (!first_.has_value()) {
+      first_ = street_->TruthAt(update_.t) * update_.odom_T_body.Inverse();  // odom begins at the first scan
+      first_path_m_ = street_->PathAt(update_.t);
+    }
+    const geom::Pose3 truth = first_->Inverse() * street_->TruthAt(update_.t);
     error_m_ = (update_.odom_T_body.t - truth.t).norm();
     worst_m_ = std::max(worst_m_, error_m_);
     error_rad_ = update_.odom_T_body.q.angularDistance(truth.q);
@@ -46,10 +52,12 @@ class LioDrive {
   }
 
   std::unique_ptr<test::StreetDrive> street_;
-  std::unique_ptr<Lio> lio_ = std::make_unique<Lio>();
+  std::unique_ptr<Lio> lio_;
   std::unique_ptr<scan::ScanAccumulator> accumulator_ = std::make_unique<scan::ScanAccumulator>();
   std::unique_ptr<sensor::Scan> scan_ = std::make_unique<sensor::Scan>();
   LioUpdate update_;
+  std::optional<geom::Pose3> first_;
+  double first_path_m_ = 0;
   double error_m_ = 0;
   double worst_m_ = 0;
   double error_rad_ = 0;
@@ -84,6 +92,56 @@ TEST(Lio, SurvivesASecondWithoutImuAndSaysSo) {
   EXPECT_GT(gap.sigma_in_gap_m_, 1.2 * clean.sigma_in_gap_m_);
 }
 
+TEST(Lio, StartsInMotion) {
+  LioDrive drive({.seconds = 30, .rest_s = -20});
+  drive.Run();
+  const double path = drive.street_->PathAt(drive.update_.t) - drive.first_path_m_;
+  ASSERT_GT(path, 150);
+  EXPECT_LT(drive.error_m_, 0.01 * path);
+}
+
+TEST(Lio, FollowsAStreetWithoutAnImu) {
+  LioConfig config;
+  config.use_imu = false;
+  LioDrive drive({.seconds = 25, .rest_s = -20}, config);
+  drive.Run();
+  const double path = drive.street_->PathAt(drive.update_.t) - drive.first_path_m_;
+  ASSERT_GT(path, 150);
+  EXPECT_LT(drive.error_m_, 0.02 * path);
+}
+
+TEST(Lio, FindsDownAlthoughTheAccelerometerIsOff) {
+  // 0.1 m/s^2 sideways feels like a tilt of 0.6 degrees. The street weaves, so the two come apart.
+  LioDrive drive({.seconds = 60, .weave_m = 4, .accel_bias_y = 0.1});
+  drive.Run();
+  const geom::Vec3d up = drive.update_.odom_T_body.q.conjugate() * geom::Vec3d::UnitZ();
+  const geom::Vec3d true_up = drive.street_->TruthAt(drive.update_.t).q.conjugate() * geom::Vec3d::UnitZ();
+  EXPECT_LT(std::acos(std::min(1.0, up.dot(true_up))), 0.6 * M_PI / 180);
+}
+
+TEST(Lio, TakesAStuckImuForNone) {
+  auto lio = std::make_unique<Lio>();
+  int refused = 0;
+  for (int i = 0; i < 100; ++i) {
+    refused += lio->AddImu({{(i + 1) * 5'000'000LL}, {0.01, 0, 0}, {0, 0, 9.8}, false}) == Status::kBadInput ? 1 : 0;
+  }
+  EXPECT_GT(refused, 70);
+  EXPECT_EQ(lio->AddImu({{600'000'000}, {0.011, 0, 0}, {0, 0, 9.8}, false}), Status::kOk);
+}
+
+TEST(Lio, GetsOverAStampThatJumpsAhead) {
+  auto lio = std::make_unique<Lio>();
+  const auto imu = [&](std::int64_t ms) {
+    return lio->AddImu({{ms * 1'000'000}, {0, 0, 0}, {0, 1e-3 * static_cast<double>(ms % 7), 9.81}, false});
+  };
+  for (std::int64_t ms = 0; ms <= 2000; ms += 5) ASSERT_EQ(imu(ms), Status::kOk);
+  ASSERT_EQ(imu(3'600'000), Status::kOk);
+  int refused = 0;
+  for (std::int64_t ms = 2010; ms <= 3000; ms += 5) refused += imu(ms) == Status::kStale ? 1 : 0;
+  EXPECT_LT(refused, 25);
+  EXPECT_EQ(lio->newest_imu().ns, 3'000'000'000);
+}
+
 TEST(Lio, FlagsACorridorThatDoesNotFixThePosition) {
   LioDrive drive({.seconds = 15, .weave_m = 0, .corridor = true});
   drive.Run();
@@ -94,7 +152,8 @@ TEST(Lio, FlagsACorridorThatDoesNotFixThePosition) {
 TEST(Lio, RefusesBrokenSamplesAndScansAndGoesOn) {
   auto lio = std::make_unique<Lio>();
   const auto imu = [&](std::int64_t ms, double gyro) {
-    return lio->AddImu({{ms * 1'000'000}, {gyro, 0, 0}, {0, 0, 9.81}, false});
+    const double noise = 1e-3 * static_cast<double>(ms % 7);  // a sensor that repeats itself is stuck
+    return lio->AddImu({{ms * 1'000'000}, {gyro, 0, 0}, {0, noise, 9.81}, false});
   };
   LioUpdate update;
   auto scan = std::make_unique<sensor::Scan>();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "core/base/crc32.hpp"
@@ -73,6 +74,43 @@ TEST_F(AgentPipelineTest, TheSameInputGivesTheSameBytes) {
   agent_->OnDriveEnd();
   ASSERT_GT(first.keyframes.size(), 5U);
   EXPECT_EQ(first.crc, second.crc);
+}
+
+// Every kind of bad input, at random, in between the good: all of it is refused and the drive comes out nearly the
+// same.
+TEST_F(AgentPipelineTest, AStreamFullOfFaultsDoesNotBendTheDrive) {
+  Record record;
+  street_ = std::make_unique<test::StreetDrive>(test::StreetDriveConfig{.seconds = 25});
+  agent_ = std::make_unique<AgentPipeline>(AgentConfig{}, &record);
+  std::mt19937 rng(5);
+  const auto chance = [&rng](int one_in) { return rng() % static_cast<unsigned>(one_in) == 0; };
+  const auto packet = std::make_unique<sensor::LidarPacket>();
+  const auto empty = std::make_unique<sensor::LidarPacket>();
+  FixedVector<sensor::ImuSample, 16> samples;
+  while (street_->Next(packet.get(), &samples)) {
+    for (sensor::ImuSample sample : samples) {
+      agent_->OnImu(sample);
+      if (chance(20)) agent_->OnImu(sample);  // no time between the two
+      sample.t = sample.t - Milliseconds(70);
+      if (chance(20)) agent_->OnImu(sample);
+      sample.t = sample.t + Milliseconds(71);
+      sample.gyro_body.x() = NAN;
+      if (chance(20)) agent_->OnImu(sample);
+    }
+    for (sensor::LidarPoint& point : packet->points) {
+      if (chance(100)) point.x = NAN;
+      if (chance(100)) point.y = INFINITY;
+    }
+    agent_->OnPacket(*packet);
+    if (chance(20)) agent_->OnPacket(*packet);
+    empty->t = packet->t - Milliseconds(300);
+    if (chance(20)) agent_->OnPacket(*empty);
+  }
+  agent_->OnDriveEnd();
+  EXPECT_GT(agent_->counters().imu_refused, 500U);
+  EXPECT_GT(agent_->counters().packets_stale, 500U);
+  const auto& last = record.poses.back().odometry;
+  EXPECT_LT((last.odom_T_body.t - street_->TruthAt(last.t).t).norm(), 0.01 * agent_->path_m());
 }
 
 TEST_F(AgentPipelineTest, WithoutImuNothingIsMadeUp) {

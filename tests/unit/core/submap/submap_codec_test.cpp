@@ -28,7 +28,7 @@ std::unique_ptr<Submap> RandomSubmap(int n) {
 
 std::vector<std::uint8_t> Encode(const Submap& submap) {
   std::vector<std::uint8_t> bytes(kCap.submap_encoded_bytes);
-  const auto n = EncodeSubmap(submap, bytes);
+  const auto n = std::make_unique<SubmapEncoder>()->Encode(submap, bytes);
   EXPECT_TRUE(n.ok());
   bytes.resize(n.value());
   return bytes;
@@ -44,9 +44,9 @@ TEST(SubmapCodec, DecodesToWithinHalfAGridStep) {
   EXPECT_TRUE(back->flushed);
   ASSERT_EQ(back->points.size(), submap->points.size());
   for (std::size_t i = 0; i < back->points.size(); ++i) {
-    EXPECT_LE(std::abs(back->points[i].x - submap->points[i].x), 0.5 / 64 + 1e-5);
-    EXPECT_LE(std::abs(back->points[i].y - submap->points[i].y), 0.5 / 64 + 1e-5);
-    EXPECT_LE(std::abs(back->points[i].z - submap->points[i].z), 0.5 / 64 + 1e-5);
+    EXPECT_LE(std::abs(back->points[i].x - submap->points[i].x), 0.5 / 32 + 1e-5);
+    EXPECT_LE(std::abs(back->points[i].y - submap->points[i].y), 0.5 / 32 + 1e-5);
+    EXPECT_LE(std::abs(back->points[i].z - submap->points[i].z), 0.5 / 32 + 1e-5);
   }
   EXPECT_LT(bytes.size(), 4 * submap->points.size() + 64);
 }
@@ -79,12 +79,12 @@ TEST(SubmapCodec, RefusesEverySingleFlippedBit) {
 TEST(SubmapCodec, SaysWhenTheBufferIsTooSmallOrAPointTooFar) {
   const auto submap = RandomSubmap(100);
   std::vector<std::uint8_t> bytes(50);
-  EXPECT_EQ(EncodeSubmap(*submap, bytes).status(), Status::kFull);
+  EXPECT_EQ(std::make_unique<SubmapEncoder>()->Encode(*submap, bytes).status(), Status::kFull);
   bytes.resize(kCap.submap_encoded_bytes);
   submap->points[0].x = 80;
-  EXPECT_EQ(EncodeSubmap(*submap, bytes).status(), Status::kOutOfRange);
+  EXPECT_EQ(std::make_unique<SubmapEncoder>()->Encode(*submap, bytes).status(), Status::kOutOfRange);
   submap->points[0].x = NAN;
-  EXPECT_EQ(EncodeSubmap(*submap, bytes).status(), Status::kOutOfRange);
+  EXPECT_EQ(std::make_unique<SubmapEncoder>()->Encode(*submap, bytes).status(), Status::kOutOfRange);
 }
 
 TEST(SubmapCodec, AnEmptySubmapIsFine) {

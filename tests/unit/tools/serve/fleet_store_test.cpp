@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/submap/submap_codec.hpp"
+#include "tests/support/sort_points.hpp"
 
 namespace mapweld::serve {
 namespace {
@@ -42,8 +43,9 @@ std::vector<mapweldlcm::submap_chunk_t> Chunks(int keyframe) {
     (void)submap->points.TryPush(
         {0.25F + 0.5F * static_cast<float>(i % 100), 0.25F, 0.25F + 0.5F * static_cast<float>(i / 100), 1, 0});
   }
+  test::SortPoints(submap.get());
   std::vector<std::uint8_t> bytes(kCap.submap_encoded_bytes);
-  bytes.resize(submap::EncodeSubmap(*submap, bytes).value());
+  bytes.resize(std::make_unique<submap::SubmapEncoder>()->Encode(*submap, bytes).value());
   std::vector<mapweldlcm::submap_chunk_t> chunks;
   for (std::size_t at = 0; at < bytes.size(); at += 1280) {
     mapweldlcm::submap_chunk_t m{};
