@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The input is an encoded submap. It is decoded as it is, and once more with the checksum at its end made right.
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -8,6 +7,7 @@
 #include "core/base/crc32.hpp"
 #include "core/submap/submap_codec.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/support/sort_points.hpp"
 
 namespace mapweld::fuzz {
 
@@ -29,12 +29,7 @@ std::vector<Bytes> Seeds() {
         }
       }
     }
-    std::sort(submap->points.begin(), submap->points.end(), [&](const auto& a, const auto& b) {
-      std::uint32_t key_a = 0;
-      std::uint32_t key_b = 0;
-      FUZZ_REQUIRE(submap::CellKey(a, submap->voxel_m, &key_a) && submap::CellKey(b, submap->voxel_m, &key_b));
-      return key_a < key_b;
-    });
+    test::SortPoints(submap.get());
     Bytes bytes(8192);
     const Result<std::size_t> n = encoder->Encode(*submap, bytes);
     FUZZ_REQUIRE(n.ok());

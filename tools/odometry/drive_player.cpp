@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "drivers/can/xsens_codec.hpp"
-#include "drivers/lidar/vlp16_codec.hpp"
+#include "drivers/lidar/velodyne_codec.hpp"
 #include "tools/replay/recording.hpp"
 
 namespace mapweld::odometry {
@@ -12,7 +12,7 @@ namespace mapweld::odometry {
 void PlayDrive(const std::filesystem::path& drive, SensorSink* sink) {
   replay::Recording recording(drive, true);
   can::XsensCodec imu{can::XsensOptions{}};
-  lidar::Vlp16Codec lidar;
+  lidar::VelodyneCodec lidar(lidar::kVlp16);
   const auto packet = std::make_unique<sensor::LidarPacket>();
   sensor::ImuSample sample;
   replay::Event event;
