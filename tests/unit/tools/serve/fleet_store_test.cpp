@@ -37,11 +37,16 @@ mapweldlcm::health_t Health(int agent, int keyframes, int mode) {
   return m;
 }
 
+constexpr int kPoints = 4000;
+
 std::vector<mapweldlcm::submap_chunk_t> Chunks(int keyframe) {
   const auto submap = std::make_unique<submap::Submap>();
-  for (int i = 0; i < 2000; ++i) {
-    (void)submap->points.TryPush(
-        {0.25F + 0.5F * static_cast<float>(i % 100), 0.25F, 0.25F + 0.5F * static_cast<float>(i / 100), 1, 0});
+  std::mt19937 random(7);
+  const auto inside = [&](int cell) {  // anywhere in it, so that there is something to encode
+    return 0.5F * (static_cast<float>(cell) + 0.1F + 0.8F * static_cast<float>(random() % 100) / 100.0F);
+  };
+  for (int i = 0; i < kPoints; ++i) {
+    (void)submap->points.TryPush({inside(i % 100), inside(0), inside(i / 100), 1, 0});
   }
   test::SortPoints(submap.get());
   std::vector<std::uint8_t> bytes(kCap.submap_encoded_bytes);
@@ -123,7 +128,7 @@ TEST(FleetStore, PutsASubmapTogetherFromPiecesInAnyOrder) {
     store.Add(chunks[0]);  // repeated
   }
   ASSERT_NE(store.FindSubmap({1, 1}, 4), nullptr);
-  EXPECT_EQ(store.FindSubmap({1, 1}, 4)->points.size(), 2000U);
+  EXPECT_EQ(store.FindSubmap({1, 1}, 4)->points.size(), static_cast<std::size_t>(kPoints));
 }
 
 TEST(FleetStore, ABrokenSubmapIsCountedAndCanBeSentAgain) {
