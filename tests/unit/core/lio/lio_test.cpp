@@ -80,7 +80,7 @@ TEST(Lio, StandsStillAtRest) {
   LioDrive drive({.seconds = 10, .rest_s = 100});
   drive.Run();
   ASSERT_GT(drive.update_.t.ns, 9'000'000'000);
-  EXPECT_LT(drive.worst_m_, 0.05);
+  EXPECT_LT(drive.worst_m_, 0.03);
 }
 
 TEST(Lio, SurvivesASecondWithoutImuAndSaysSo) {
