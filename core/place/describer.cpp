@@ -109,7 +109,7 @@ Status Describer::Describe(const submap::Submap& submap, PlaceDescription* descr
   spectrum_.Clear();
   azimuth_.Clear();
   grid_.ForEach([this](const Column& column) {
-    spectrum_.Add(column);
+    spectrum_.Add(column, column.weight_q8);
     azimuth_.Add(column);
   });
   spectrum_.Transform();
