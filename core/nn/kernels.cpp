@@ -6,9 +6,9 @@
 namespace mapweld::nn {
 namespace {
 
-constexpr Kernels kPortable{"portable", LinearPortable, LinearSumsPortable};
+constexpr Kernels kPortable{"portable", LinearPortable, LinearSumsPortable, SoftAssignPortable, PackRowsPortable};
 #if defined(__x86_64__)
-constexpr Kernels kAvx2{"avx2", LinearAvx2, LinearSumsAvx2};
+constexpr Kernels kAvx2{"avx2", LinearAvx2, LinearSumsAvx2, SoftAssignPortable, PackRowsPortable};
 #endif
 
 }  // namespace

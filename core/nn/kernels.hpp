@@ -6,6 +6,8 @@
 
 #include "core/base/fixed_vector.hpp"
 #include "core/nn/linear.hpp"
+#include "core/nn/pack_rows.hpp"
+#include "core/nn/soft_assignment.hpp"
 
 namespace mapweld::nn {
 
@@ -24,6 +26,8 @@ struct Kernels {
   const char* name;
   LinearFunction linear;
   LinearSumsFunction linear_sums;
+  SoftAssignFunction soft_assign;
+  PackRowsFunction pack_rows;
 };
 const Kernels& PortableKernels();
 // The fastest for these features.

@@ -31,11 +31,14 @@ constexpr std::size_t PackedBytes(std::size_t outputs, std::size_t inputs) {
   return SumStride(outputs) * RowStride(inputs);
 }
 
-// The one rounding rule of all layers: y = floor(sum * multiplier / 2^shift + 1/2), clamped. Exact in 64 bits.
-inline std::int8_t Requantize(std::int32_t sum, std::int32_t multiplier, std::int32_t shift, std::int32_t lowest) {
+// The one rounding rule of all layers: floor(sum * multiplier / 2^shift + 1/2), exact in 64 bits; with a shift of 32 to
+// 62 the result is within +-2^30.
+inline std::int32_t ScaleSum(std::int32_t sum, std::int32_t multiplier, std::int32_t shift) {
   const std::int64_t product = std::int64_t{sum} * multiplier;
-  const std::int64_t y = (product + (std::int64_t{1} << (shift - 1))) >> shift;
-  return static_cast<std::int8_t>(std::clamp<std::int64_t>(y, lowest, 127));
+  return static_cast<std::int32_t>((product + (std::int64_t{1} << (shift - 1))) >> shift);
+}
+inline std::int8_t Requantize(std::int32_t sum, std::int32_t multiplier, std::int32_t shift, std::int32_t lowest) {
+  return static_cast<std::int8_t>(std::clamp<std::int32_t>(ScaleSum(sum, multiplier, shift), lowest, 127));
 }
 
 // What a layer is made of, as the model blob holds it. Behind the last output all arrays are padded: weights and bias
