@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/nn/kernels.hpp"
 
-#include "core/nn/linear_avx2.hpp"
+#include "core/nn/avx2.hpp"
 
 namespace mapweld::nn {
 namespace {
 
 constexpr Kernels kPortable{"portable", LinearPortable, LinearSumsPortable, SoftAssignPortable, PackRowsPortable};
 #if defined(__x86_64__)
-constexpr Kernels kAvx2{"avx2", LinearAvx2, LinearSumsAvx2, SoftAssignPortable, PackRowsPortable};
+constexpr Kernels kAvx2{"avx2", LinearAvx2, LinearSumsAvx2, SoftAssignAvx2, PackRowsAvx2};
 #endif
 
 }  // namespace

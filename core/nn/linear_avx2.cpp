@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/nn/linear_avx2.hpp"
+#include "core/nn/avx2.hpp"
 
 #if defined(__x86_64__)
 #define MAPWELD_TILE_TARGET "avx2"

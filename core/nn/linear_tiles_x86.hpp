@@ -6,6 +6,7 @@
 // Everything here is private to that source: the same code compiled for another target must not be merged with it.
 #pragma once
 
+#include "core/nn/linear.hpp"
 #include "core/nn/requantize_avx2.hpp"
 
 #define MAPWELD_TILE __attribute__((target(MAPWELD_TILE_TARGET)))
@@ -50,8 +51,8 @@ class StoreBytes {
   MAPWELD_TILE_INLINE StoreBytes(const LinearLayer& layer, std::int8_t* out)
       : layer_(layer), out_(out), stride_(RowStride(layer.p.outputs)) {}
   MAPWELD_TILE_INLINE void Begin(std::size_t block0, std::size_t block1) {
-    first_ = avx2::MakeRequantizer(layer_, block0);
-    second_ = avx2::MakeRequantizer(layer_, block1);
+    first_ = RequantizerOf(block0);
+    second_ = RequantizerOf(block1);
     lowest_ = _mm256_set1_epi8(static_cast<char>(layer_.p.lowest));
     at_ = block0 * kOutputsPerBlock;
     width_ = stride_ - at_ < kPairOutputs ? stride_ - at_ : kPairOutputs;
@@ -69,6 +70,10 @@ class StoreBytes {
   }
 
  private:
+  MAPWELD_TILE_INLINE avx2::Requantizer RequantizerOf(std::size_t block) const {
+    return avx2::MakeRequantizer(layer_.p.multiplier.data() + block * kOutputsPerBlock,
+                                 layer_.p.shift.data() + block * kOutputsPerBlock);
+  }
   MAPWELD_TILE_INLINE void PutRow(std::size_t row, __m128i bytes) const {
     std::int8_t* to = out_ + row * stride_ + at_;
     if (width_ == kPairOutputs) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requantize() of linear.hpp for eight outputs at a time.
+// ScaleSum() and Requantize() of linear.hpp for eight outputs at a time.
 #pragma once
 
 #include <immintrin.h>
 
-#include <cstddef>
 #include <cstdint>
-
-#include "core/nn/linear.hpp"
 
 #define MAPWELD_AVX2_INLINE __attribute__((target("avx2"), always_inline)) inline
 
@@ -22,10 +19,9 @@ struct Requantizer {
   __m256i offset;
 };
 
-MAPWELD_AVX2_INLINE Requantizer MakeRequantizer(const LinearLayer& layer, std::size_t block) {
-  const std::size_t at = block * kOutputsPerBlock;
-  const __m256i multiplier = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(layer.p.multiplier.data() + at));
-  const __m256i shift = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(layer.p.shift.data() + at));
+MAPWELD_AVX2_INLINE Requantizer MakeRequantizer(const std::int32_t* multipliers, const std::int32_t* shifts) {
+  const __m256i multiplier = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(multipliers));
+  const __m256i shift = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(shifts));
   const __m256i even = _mm256_and_si256(shift, _mm256_set1_epi64x(0xFFFFFFFF));
   const __m256i odd = _mm256_srli_epi64(shift, 32);
   const __m256i one = _mm256_set1_epi64x(1);

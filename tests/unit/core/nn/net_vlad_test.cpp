@@ -92,7 +92,7 @@ TEST(NetVlad, IsCloseToItsFormulaInDouble) {
   double dot = 0, squares = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     dot += out[i] * reference[i];
-    squares += double{out[i]} * out[i];
+    squares += static_cast<double>(out[i]) * out[i];
   }
   EXPECT_GT(dot / std::sqrt(squares), 0.999);
   EXPECT_NEAR(std::sqrt(squares) * double{test.parameters.output_scale}, 1.0, 0.01);
