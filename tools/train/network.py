@@ -75,7 +75,7 @@ class SpectrumCode(nn.Module):
 
 
 class PlanNetwork(nn.Module):
-    def __init__(self, dropout=0.2, band_dropout=0.25):
+    def __init__(self, dropout=0.4, band_dropout=0.25):
         super().__init__()
         self.band_dropout = band_dropout
         self.input_norm = nn.BatchNorm2d(3)
