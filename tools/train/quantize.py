@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a trained descriptor into the agent's int8 model: quantize.py MODEL.pt CALIBRATION.npz -o MODEL.mwm --name NAME
+"""Makes a trained descriptor into the agent's int8 model: quantize.py MODEL.pt --calibrate SET.npz ... -o MODEL.mwm --name NAME
 
 Batch norms are folded into weights, scales are taken from the calibration places, and the integer network is run beside
 the floating-point one: the cosine between both is printed. --golden writes test vectors.
@@ -79,8 +79,8 @@ class IntegerNetwork:
                 seen.append(layer(seen[-1]))
             features = network.feature_norm(network.features(x, image_features(x)))
         # Rare peaks are cut so that all the rest is finer.
-        steps = [float(np.quantile(s.abs().numpy(), 0.9995)) / 127 for s in seen]
-        feature_step = float(np.quantile(features.abs().numpy(), 0.9995)) / 127
+        steps = [float(np.quantile(s.abs().numpy(), 0.99999)) / 127 for s in seen]
+        feature_step = float(np.quantile(features.abs().numpy(), 0.99999)) / 127
 
         norm = network.input_norm
         scale = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().double().numpy()
@@ -169,23 +169,26 @@ def write_golden(path, submap_set, code):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("model")
-    parser.add_argument("calibration", help="an .npz of inputs.py that the model was trained on")
+    parser.add_argument("--calibrate", nargs="+", required=True, help="the sets of inputs.py that it was trained on")
     parser.add_argument("-o", "--out", required=True)
     parser.add_argument("--name", required=True, help="name and date of the model, for logs")
-    parser.add_argument("--share", type=float, default=0.1, help="of the network in the squared length")
+    parser.add_argument("--share", type=float, default=0.07, help="of the network in the squared length")
     parser.add_argument("--check", nargs="*", default=[], help=".npz sets on which Recall@1 of both is compared")
     parser.add_argument("--golden", nargs=2, metavar=("SET.bin", "FILE"), help="test vectors for the agent's code")
     a = parser.parse_args()
     model = TrainedCode()
     model.load_state_dict(torch.load(a.model))
-    places = Places(a.calibration)
-    some = np.sort(np.random.default_rng(0).choice(len(places.drive), min(512, len(places.drive)), replace=False))
-    integer = IntegerCode(model, places.images(some, 0), a.share)
+    rng = np.random.default_rng(0)
+    sets = [Places(path) for path in a.calibrate]
+    images = np.concatenate([s.images(np.sort(rng.choice(len(s.drive), min(256, len(s.drive)), replace=False)), 0)
+                             for s in sets])
+    integer = IntegerCode(model, images, a.share)
     write_model(a.out, a.name, integer.tensors())
 
     def floating(pixels):
         with torch.no_grad():
-            return fuse(*model(torch.from_numpy(pixels.astype(np.float32) / 64)), a.share).numpy()
+            spectrum, network = model(torch.from_numpy(pixels.astype(np.float32) / 64))
+        return fuse(spectrum[:, torch.from_numpy(integer.index).long()], network, a.share).numpy()
 
     def network_only(pixels):
         with torch.no_grad():

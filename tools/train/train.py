@@ -18,7 +18,7 @@ from network import TrainedCode, fuse
 from places import Places, draw_batch, recall
 
 
-SHARE = 0.1  # of the network in what is reported as "both"
+SHARE = 0.07  # of the network in what is reported as "both"
 
 
 def open_places(text):
@@ -62,7 +62,7 @@ def main():
     parser.add_argument("--sets", nargs="+", required=True)
     parser.add_argument("--validation", nargs="+", required=True)
     parser.add_argument("-o", "--out", required=True)
-    parser.add_argument("--steps", type=int, default=2000)
+    parser.add_argument("--steps", type=int, default=500)
     parser.add_argument("--neighbourhoods", type=int, default=8, help="of a batch")
     parser.add_argument("--places", type=int, default=8, help="of a neighbourhood, two views each")
     parser.add_argument("--rate", type=float, default=1.5e-3)
