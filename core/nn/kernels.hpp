@@ -2,8 +2,6 @@
 // The inner loops of the layers for the machine the program runs on, chosen once at start. All give the same bytes.
 #pragma once
 
-#include <cstddef>
-
 #include "core/base/fixed_vector.hpp"
 #include "core/nn/linear.hpp"
 #include "core/nn/pack_rows.hpp"
@@ -15,8 +13,7 @@ struct CpuFeatures {
   bool avx2 = false;
   bool avx_vnni = false;     // VEX-coded dot product
   bool avx512_vnni = false;  // with VL
-  bool neon = false;
-  bool dot_product = false;  // of aarch64
+  bool dot_product = false;  // of ARMv8.2
 };
 // Asks the processor by instructions that need no operating system: cpuid, and on aarch64 a register that Linux lets
 // programs read since 4.11.

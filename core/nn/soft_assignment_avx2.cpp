@@ -72,13 +72,19 @@ MAPWELD_AVX2_INLINE void OneRow(const Scales& scales, const std::int32_t* sums, 
   }
 }
 
+MAPWELD_AVX2_INLINE __m128i LoadEight(const std::uint8_t* from) {
+  return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+}
+
+// Rows `stride` apart, two after each other, byte by byte.
+MAPWELD_AVX2_INLINE __m128i Interleave(const std::uint8_t* from, std::size_t stride) {
+  return _mm_unpacklo_epi8(LoadEight(from), LoadEight(from + stride));
+}
+
 // Eight rows of eight bytes, each row `stride` apart, to eight columns.
 MAPWELD_AVX2_INLINE void Transpose8x8(const std::uint8_t* from, std::size_t stride, std::uint8_t (*to)[8]) {
-  const auto row = [ from, stride ](std::size_t i) __attribute__((target("avx2"), always_inline)) {
-    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + i * stride));
-  };
-  const __m128i r01 = _mm_unpacklo_epi8(row(0), row(1)), r23 = _mm_unpacklo_epi8(row(2), row(3));
-  const __m128i r45 = _mm_unpacklo_epi8(row(4), row(5)), r67 = _mm_unpacklo_epi8(row(6), row(7));
+  const __m128i r01 = Interleave(from, stride), r23 = Interleave(from + 2 * stride, stride);
+  const __m128i r45 = Interleave(from + 4 * stride, stride), r67 = Interleave(from + 6 * stride, stride);
   const __m128i a = _mm_unpacklo_epi16(r01, r23), b = _mm_unpackhi_epi16(r01, r23);
   const __m128i c = _mm_unpacklo_epi16(r45, r67), d = _mm_unpackhi_epi16(r45, r67);
   _mm_storeu_si128(reinterpret_cast<__m128i*>(to[0]), _mm_unpacklo_epi32(a, c));

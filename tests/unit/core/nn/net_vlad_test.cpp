@@ -71,7 +71,7 @@ std::vector<double> Reference(const TestVlad& test) {
     }
     for (std::size_t k = 0; k < clusters; ++k) {
       for (std::size_t c = 0; c < channels; ++c)
-        v[k * channels + c] += a[k] / total * (row[c] - double{p.centres[k * channels + c]});
+        v[k * channels + c] += a[k] / total * (row[c] - static_cast<double>(p.centres[k * channels + c]));
     }
   }
   double all = 0;
@@ -95,7 +95,7 @@ TEST(NetVlad, IsCloseToItsFormulaInDouble) {
     squares += static_cast<double>(out[i]) * out[i];
   }
   EXPECT_GT(dot / std::sqrt(squares), 0.999);
-  EXPECT_NEAR(std::sqrt(squares) * double{test.parameters.output_scale}, 1.0, 0.01);
+  EXPECT_NEAR(std::sqrt(squares) * static_cast<double>(test.parameters.output_scale), 1.0, 0.01);
 }
 
 TEST(NetVlad, DoesNotDependOnTheBlocksOrTheKernel) {
