@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The input is the body of a record of a store, after a byte that says of which table. What a decoder accepts is written
-// again as the same bytes; a submap that an agent encoded may have other bytes for the same points.
+// The input is the body of a record of a store, after a byte that says of which table. What a decoder accepts is
+// written again as the same bytes; a submap that an agent encoded may have other bytes for the same points.
 #include "tests/fuzz/fuzz.hpp"
 #include "tools/store/record_codec.hpp"
 
@@ -45,7 +45,8 @@ std::vector<Bytes> Seeds() {
           WithTable(store::Table::kTrajectories, store::Encode(store::ScanTrajectory{{{1}}, {{}}, {0.5}})),
           WithTable(store::Table::kPairs, store::Encode(pair)),
           WithTable(store::Table::kMerges, store::Encode(merge)),
-          WithTable(store::Table::kRulings, store::Encode(store::Ruling{store::Ruling::Kind::kQuarantine, "a", "", "now"}))};
+          WithTable(store::Table::kRulings,
+                    store::Encode(store::Ruling{store::Ruling::Kind::kQuarantine, "a", "", "now"}))};
 }
 
 }  // namespace mapweld::fuzz

@@ -12,7 +12,7 @@ namespace mapweld::test {
 struct CrashFile {
   sqlite3_file base;
   CrashDisk* disk;
-  std::string* name;                  // null: a file without a name, which lives until it is closed
+  std::string* name;  // null: a file without a name, which lives until it is closed
   std::vector<std::uint8_t>* unnamed;
 
   static CrashFile* From(sqlite3_file* file) { return reinterpret_cast<CrashFile*>(file); }
@@ -38,7 +38,8 @@ struct CrashFile {
   }
   static int Write(sqlite3_file* file, const void* data, int n, sqlite3_int64 at) {
     CrashFile* const self = From(file);
-    if (const int code = self->Count(CrashDisk::Operation::kWrite, static_cast<std::uint64_t>(at), data, n)) return code;
+    if (const int code = self->Count(CrashDisk::Operation::kWrite, static_cast<std::uint64_t>(at), data, n))
+      return code;
     std::vector<std::uint8_t>& bytes = self->bytes();
     const auto end = static_cast<std::size_t>(at) + static_cast<std::size_t>(n);
     if (bytes.size() < end) bytes.resize(end);
@@ -173,8 +174,8 @@ CrashDisk::Files CrashDisk::AfterCut(std::size_t n, Unsynced mode, std::uint32_t
   std::map<std::string, std::size_t> synced;  // operations before this one are on the disk
   for (std::size_t i = 0; i < n; ++i) {
     // A directory keeps its order: what was deleted before the file was made anew is gone.
-    const bool settles = log_[i].kind == Operation::kSync || (i > 0 && log_[i].kind == Operation::kWrite &&
-                                                              log_[i - 1].kind == Operation::kDelete);
+    const bool settles = log_[i].kind == Operation::kSync ||
+                         (i > 0 && log_[i].kind == Operation::kWrite && log_[i - 1].kind == Operation::kDelete);
     if (settles) synced[log_[i].file] = log_[i].kind == Operation::kSync ? i + 1 : i;
   }
   Files files = initial_;

@@ -29,8 +29,8 @@ class CrashDisk {
   // Writes, truncations, syncs and deletions so far.
   [[nodiscard]] std::size_t operations() const { return log_.size(); }
 
-  // The n-th operation from now (0: the next) fails with `code`, for example SQLITE_FULL; with `for_ever` all later ones
-  // too. Failed operations are counted and change nothing.
+  // The n-th operation from now (0: the next) fails with `code`, for example SQLITE_FULL; with `for_ever` all later
+  // ones too. Failed operations are counted and change nothing.
   void FailAt(std::size_t n, int code, bool for_ever);
   void StopFailing() { fail_code_ = SQLITE_OK; }
   [[nodiscard]] bool has_failed() const { return has_failed_; }

@@ -7,8 +7,8 @@
 namespace mapweld {
 
 // While it lives, SIGINT and SIGTERM end the program at once, whatever it does: with one sentence, without half-written
-// files beside the output, exit code 128 + signal. Create it before any other thread. A store needs no help: what it had
-// acknowledged stays.
+// files beside the output, exit code 128 + signal. Create it before any other thread. A store needs no help: what it
+// had acknowledged stays.
 class CleanInterrupt {
  public:
   explicit CleanInterrupt(std::string sentence);

@@ -97,8 +97,9 @@ void AddMergeCommand(CLI::App& app) {
   command->add_option("recordings", arguments->inputs,
                       "folders (KITTI layout, or PCD/PLY clouds with a TUM trajectory) and .lcm logs");
   command->add_option("-o,--out", arguments->out, "folder for map, trajectories and report.html")->required();
-  command->add_option("--store", arguments->store,
-                      "file that keeps the city: merges these recordings with all that it holds, and does nothing twice");
+  command->add_option(
+      "--store", arguments->store,
+      "file that keeps the city: merges these recordings with all that it holds, and does nothing twice");
   command->add_option("--truth", arguments->truth,
                       "NAME=FILE: true trajectory of a recording, for the errors in the report");
   command->add_option("--truth-folder", arguments->truth_folder,

@@ -23,9 +23,8 @@ MergeInput OpenFolder(const std::string& name, const std::filesystem::path& path
   input.fingerprint = store::Hash(store::Encode(store::ScanTrajectory{folder->times(), folder->world_T_lidar(), {}}));
   input.build = [name, folder, threads, progress] {
     progress->SetSubject(name);
-    const Recording recording{name, folder->times(), folder->world_T_lidar(), [folder](int scan) {
-                                return folder->LoadScan(static_cast<std::size_t>(scan)).points;
-                              }};
+    const Recording recording{name, folder->times(), folder->world_T_lidar(),
+                              [folder](int scan) { return folder->LoadScan(static_cast<std::size_t>(scan)).points; }};
     RecordingConfig config;
     config.threads = threads;
     const auto recorded = std::make_shared<RecordedDrive>(BuildDrive(recording, config, progress));

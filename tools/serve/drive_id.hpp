@@ -7,8 +7,8 @@
 
 namespace mapweld::serve {
 
-// One drive: an agent between two starts. Its odometry has one frame. Agent 0: a recording that the store holds, with its
-// key there as the epoch; nobody to ask or to tell.
+// One drive: an agent between two starts. Its odometry has one frame. Agent 0: a recording that the store holds, with
+// its key there as the epoch; nobody to ask or to tell.
 struct DriveId {
   std::int16_t agent = 0;
   std::int32_t epoch = 0;

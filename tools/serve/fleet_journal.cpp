@@ -52,8 +52,7 @@ bool FleetJournal::Commit(Clock::time_point now, std::mutex* fleet_mutex) {
   if (city_ != nullptr) {
     CollectKeyframes();
     for (const WholeSubmap& submap : submaps_) {
-      unsaved_.push_back(
-          {submap.id, store::Table::kSubmaps, submap.keyframe, store::EncodedByAgent(submap.encoded)});
+      unsaved_.push_back({submap.id, store::Table::kSubmaps, submap.keyframe, store::EncodedByAgent(submap.encoded)});
     }
     CollectDrives();
     if (!unsaved_.empty() || !unsaved_drives_.empty()) Save(now);

@@ -29,9 +29,9 @@ class FleetJournal {
   void Take(const mapweldlcm::health_t& message) { healths_[{message.agent_id, message.epoch}] = message; }
   void Take(const mapweldlcm::submap_chunk_t& message) { chunks_.push_back(message); }
 
-  // Puts what was taken on the disk, then into the fleet. true: something of it was new. `fleet_mutex` is held while the
-  // fleet changes, never while the disk is waited for; all calls come from one thread. Cost: one transaction, or nothing
-  // when all of it was known.
+  // Puts what was taken on the disk, then into the fleet. true: something of it was new. `fleet_mutex` is held while
+  // the fleet changes, never while the disk is waited for; all calls come from one thread. Cost: one transaction, or
+  // nothing when all of it was known.
   bool Commit(Clock::time_point now, std::mutex* fleet_mutex);
 
   // Read these under the mutex.

@@ -106,10 +106,10 @@ std::vector<std::string> FleetLink::Warnings() {
   std::vector<std::string> warnings;
   for (const DriveId& id : store_.Ids()) {
     if (!store_.IsDisputed(id)) continue;
-    warnings.push_back(
-        fmt::format("two vehicles call themselves agent {} in boot {}, and nothing more is taken from either; give each "
-                    "its own --agent-id, or its --state-dir back if that was lost",
-                    id.agent, id.epoch));
+    warnings.push_back(fmt::format(
+        "two vehicles call themselves agent {} in boot {}, and nothing more is taken from either; give each "
+        "its own --agent-id, or its --state-dir back if that was lost",
+        id.agent, id.epoch));
   }
   for (const std::int16_t agent : presence_.twins()) {
     warnings.push_back(

@@ -35,8 +35,8 @@ struct MergedKeyframe {
 
 class FleetLink {
  public:
-  // Joins the network and starts to listen. Throws one sentence when the network cannot be joined. city: keeps what comes
-  // and gives what came before; null: nothing lasts.
+  // Joins the network and starts to listen. Throws one sentence when the network cannot be joined. city: keeps what
+  // comes and gives what came before; null: nothing lasts.
   explicit FleetLink(const std::string& lcm_url, store::CityStore* city = nullptr);
   ~FleetLink();
   FleetLink(const FleetLink&) = delete;

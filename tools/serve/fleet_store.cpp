@@ -15,8 +15,8 @@ constexpr int kModeEnded = 4;
 
 // The same keyframe sent again is the same to the bit; only another vehicle sends another.
 bool IsSame(const merge::Keyframe& x, const merge::Keyframe& y) {
-  return x.t.ns == y.t.ns && x.odom_T_body.t == y.odom_T_body.t && x.odom_T_body.q.coeffs() == y.odom_T_body.q.coeffs() &&
-         x.place.descriptor.q == y.place.descriptor.q;
+  return x.t.ns == y.t.ns && x.odom_T_body.t == y.odom_T_body.t &&
+         x.odom_T_body.q.coeffs() == y.odom_T_body.q.coeffs() && x.place.descriptor.q == y.place.descriptor.q;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that is known of the fleet while `mapweld serve` runs: keyframes, health, submaps. In memory; what makes it
-// last is fleet_journal.hpp.
+// Everything that is known of the fleet while `mapweld serve` runs: keyframes, health, submaps. In memory; what makes
+// it last is fleet_journal.hpp.
 #pragma once
 
 #include <cstdint>
@@ -47,8 +47,8 @@ class FleetStore {
   void Add(const mapweldlcm::keyframe_t& message);
   void Add(const mapweldlcm::health_t& message);
   void Add(const mapweldlcm::submap_chunk_t& message);
-  // The two halves of the last one, for whoever has to do something in between: the submap when this piece completes it,
-  // and the submap becoming known.
+  // The two halves of the last one, for whoever has to do something in between: the submap when this piece completes
+  // it, and the submap becoming known.
   std::optional<WholeSubmap> Assemble(const mapweldlcm::submap_chunk_t& message);
   void AddSubmap(WholeSubmap submap);
   // By which name the drive goes, if not by its id.

@@ -232,7 +232,8 @@ Server::Merged Server::MergeForGood() {
     WantMissing(merged, fresh);
     const std::size_t left = Fetch();
     if (left > 0) fmt::print(stderr, "serve: {} submaps did not arrive; merging without them\n", left);
-    const bool more = link_.WithStore([&](const FleetStore& store) { return store.counters().submaps > merged_submaps_; });
+    const bool more =
+        link_.WithStore([&](const FleetStore& store) { return store.counters().submaps > merged_submaps_; });
     if (left == 0 && more) continue;
     if (city_ != nullptr) {
       StoredSubmaps submaps(&link_, &merged.fleet.ids);

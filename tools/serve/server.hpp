@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `mapweld serve`: collects what agents send, merges again whenever enough is new, tells every agent where it is. With a
-// store it goes on where an earlier one ended or was killed.
+// `mapweld serve`: collects what agents send, merges again whenever enough is new, tells every agent where it is. With
+// a store it goes on where an earlier one ended or was killed.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ namespace mapweld::serve {
 struct ServeOptions {
   std::string lcm_url;  // empty: $LCM_DEFAULT_URL, else LCM's default
   std::filesystem::path out;
-  std::filesystem::path store;  // the city's file; empty: nothing lasts
-  int agents = 0;               // end when this many have ended their drives; 0: on SIGINT or SIGTERM
+  std::filesystem::path store;    // the city's file; empty: nothing lasts
+  int agents = 0;                 // end when this many have ended their drives; 0: on SIGINT or SIGTERM
   double submap_bytes_per_s = 0;  // asked of all agents together; 0: as fast as they allow themselves
   std::map<std::string, std::filesystem::path> truth;  // by drive name, for the errors in the report
   merge::MergeConfig merge;
@@ -32,8 +32,8 @@ struct ServeOptions {
 class Server {
  public:
   explicit Server(ServeOptions options);
-  // Until all agents are done or a signal asks for the end; then the last merge, the files and the table. A second signal
-  // ends at once. Throws when something could not be stored.
+  // Until all agents are done or a signal asks for the end; then the last merge, the files and the table. A second
+  // signal ends at once. Throws when something could not be stored.
   void Run();
 
  private:

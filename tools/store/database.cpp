@@ -236,8 +236,8 @@ std::optional<Record> Database::Get(Table table, std::int64_t key) {
 
 void Database::ForEach(Table table, std::int64_t first, std::int64_t last, const std::function<void(Record)>& take) {
   const std::lock_guard lock(mutex_);
-  Statement statement(
-      this, fmt::format("SELECT id, body, crc FROM {} WHERE id BETWEEN ?1 AND ?2 ORDER BY id", Name(table)));
+  Statement statement(this,
+                      fmt::format("SELECT id, body, crc FROM {} WHERE id BETWEEN ?1 AND ?2 ORDER BY id", Name(table)));
   statement.Bind(1, first);
   statement.Bind(2, last);
   while (statement.Step()) {

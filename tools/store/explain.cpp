@@ -18,8 +18,7 @@ constexpr std::size_t kLoopsShown = 20;
 StoredDrive Named(CityStore* store, const std::string& name) {
   auto drive = store->FindDrive(name);
   if (!drive.has_value()) {
-    throw StoreError(
-        fmt::format("the store {} holds no drive called '{}'", store->database().path().string(), name));
+    throw StoreError(fmt::format("the store {} holds no drive called '{}'", store->database().path().string(), name));
   }
   return *drive;
 }
@@ -43,21 +42,24 @@ std::string Likeness(const merge::Drive& a, const merge::Drive& b) {
   const merge::Distances distances = merge::ComputeDistances(a, b);
   if (distances.d.empty()) return "";
   const auto best = std::min_element(distances.d.begin(), distances.d.end()) - distances.d.begin();
-  return fmt::format("most alike    keyframe {} of {} and {} of {}, descriptor distance {:.3f} (0 the same, 1 nothing in common)\n",
-                     best / distances.cols, a.name, best % distances.cols, b.name,
-                     static_cast<double>(distances.d[static_cast<std::size_t>(best)]));
+  return fmt::format(
+      "most alike    keyframe {} of {} and {} of {}, descriptor distance {:.3f} (0 the same, 1 nothing in common)\n",
+      best / distances.cols, a.name, best % distances.cols, b.name,
+      static_cast<double>(distances.d[static_cast<std::size_t>(best)]));
 }
 
 std::string Loops(const merge::Overlap& overlap) {
-  std::string text = fmt::format("loops         {} pairs of keyframes that registration confirmed\n", overlap.loops.size());
+  std::string text =
+      fmt::format("loops         {} pairs of keyframes that registration confirmed\n", overlap.loops.size());
   if (overlap.loops.empty()) return text;
   text += "                    a      b    overlap   residual m   weight\n";
   for (std::size_t i = 0; i < std::min(kLoopsShown, overlap.loops.size()); ++i) {
     const merge::Loop& loop = overlap.loops[i];
-    text += fmt::format("                {:5}  {:5}      {:.2f}        {:.3f}     {:.2f}\n", loop.keyframe_a, loop.keyframe_b,
-                        loop.overlap_ratio, loop.residual_m, loop.weight);
+    text += fmt::format("                {:5}  {:5}      {:.2f}        {:.3f}     {:.2f}\n", loop.keyframe_a,
+                        loop.keyframe_b, loop.overlap_ratio, loop.residual_m, loop.weight);
   }
-  if (overlap.loops.size() > kLoopsShown) text += fmt::format("                and {} more\n", overlap.loops.size() - kLoopsShown);
+  if (overlap.loops.size() > kLoopsShown)
+    text += fmt::format("                and {} more\n", overlap.loops.size() - kLoopsShown);
   return text;
 }
 
@@ -87,12 +89,13 @@ std::string Explain(CityStore* store, const std::string& name_a, const std::stri
   const int group_b = GroupOf(record, b);
   const std::string groups = group_a == group_b ? fmt::format("both in group {}", group_a)
                                                 : fmt::format("in groups {} and {}", group_a, group_b);
-  const auto overlap = std::find_if(record.overlaps.begin(), record.overlaps.end(), [&](const merge::Overlap& o) {
-    return o.drive_a == a && o.drive_b == b;
-  });
+  const auto overlap = std::find_if(record.overlaps.begin(), record.overlaps.end(),
+                                    [&](const merge::Overlap& o) { return o.drive_a == a && o.drive_b == b; });
   if (overlap == record.overlaps.end()) {
-    return text + fmt::format("verdict       no overlap, {}\ntest          association: nothing in the two drives is alike enough to be tried\n{}",
-                              groups, Likeness(drive_a, drive_b));
+    return text + fmt::format(
+                      "verdict       no overlap, {}\ntest          association: nothing in the two drives is alike "
+                      "enough to be tried\n{}",
+                      groups, Likeness(drive_a, drive_b));
   }
   text += fmt::format("verdict       {}, {}\n", overlap->accepted ? "overlap accepted" : "overlap refused", groups);
   text += fmt::format("test          {} (the one that decided)\n", overlap->test);

@@ -107,10 +107,10 @@ FsckReport Fsck(CityStore* store) {
 }
 
 std::string ToJson(const FsckReport& report) {
-  const nlohmann::ordered_json json = {{"clean", report.Clean()},         {"drives", report.drives},
-                                       {"keyframes", report.keyframes},   {"submaps", report.submaps},
-                                       {"merges", report.merges},         {"structure", report.structure},
-                                       {"damaged", report.damaged},       {"dangling", report.dangling}};
+  const nlohmann::ordered_json json = {{"clean", report.Clean()},       {"drives", report.drives},
+                                       {"keyframes", report.keyframes}, {"submaps", report.submaps},
+                                       {"merges", report.merges},       {"structure", report.structure},
+                                       {"damaged", report.damaged},     {"dangling", report.dangling}};
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -13,8 +13,9 @@ namespace mapweld::store {
 
 struct FsckReport {
   std::vector<std::string> structure;  // what SQLite says, line by line
-  std::vector<std::string> damaged;    // records whose bytes are not those written: they are left out when the store is used
-  std::vector<std::string> dangling;   // records that name something that is not there
+  std::vector<std::string>
+      damaged;  // records whose bytes are not those written: they are left out when the store is used
+  std::vector<std::string> dangling;  // records that name something that is not there
   std::int64_t drives = 0;
   std::int64_t keyframes = 0;
   std::int64_t submaps = 0;

@@ -191,8 +191,8 @@ std::vector<std::pair<std::string, std::string>> Undo(CityStore* store, const st
     for (const auto& pair : Accepted(last.record)) {
       if (known.contains(pair)) continue;
       withdrawn.push_back(pair);
-      AddRuling(store, {Ruling::Kind::kRefusePair, std::min(pair.first, pair.second),
-                        std::max(pair.first, pair.second), when});
+      AddRuling(store, {Ruling::Kind::kRefusePair, std::min(pair.first, pair.second), std::max(pair.first, pair.second),
+                        when});
     }
     if (withdrawn.empty()) {
       throw StoreError(fmt::format("merge {} joined nothing that was not joined before; nothing to undo", last.number));

@@ -67,7 +67,8 @@ void PairMemory::Put(int a, int b, const merge::PairOutcome& outcome) {
   pair.overlap = outcome.overlap;
   pair.overlap.drive_a = 0;
   pair.overlap.drive_b = 1;
-  for (const auto& [key, found] : outcome.asked) pair.asked.emplace_back(merge::SubmapKey{key.drive == a ? 0 : 1, key.keyframe}, found);
+  for (const auto& [key, found] : outcome.asked)
+    pair.asked.emplace_back(merge::SubmapKey{key.drive == a ? 0 : 1, key.keyframe}, found);
   store_->database().Put(Table::kPairs, KeyOf(a, b), Encode(pair));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What earlier merges found between pairs of drives, so that a drive added tomorrow is searched against the city, and the
-// city not against itself. The result is the same as without it.
+// What earlier merges found between pairs of drives, so that a drive added tomorrow is searched against the city, and
+// the city not against itself. The result is the same as without it.
 #pragma once
 
 #include <cstdint>

@@ -18,10 +18,8 @@ class Writer {
  public:
   static constexpr bool kReads = false;
   template <class T>
-    requires std::is_integral_v<T> || std::is_enum_v<T>
-  void operator()(const T& value) {
-    Append(&value, sizeof(T));
-  }
+  requires std::is_integral_v<T> || std::is_enum_v<T>
+  void operator()(const T& value) { Append(&value, sizeof(T)); }
   void operator()(const double& value) { Append(&value, sizeof(value)); }
   void operator()(const float& value) { Append(&value, sizeof(value)); }
   void operator()(const std::string& text) {
@@ -45,7 +43,7 @@ class Reader {
   static constexpr bool kReads = true;
   explicit Reader(std::span<const std::uint8_t> bytes) : reader_(bytes) {}
   template <class T>
-    requires std::is_integral_v<T> || std::is_enum_v<T>
+  requires std::is_integral_v<T> || std::is_enum_v<T>
   void operator()(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
       const auto byte = reader_.Little<std::uint8_t>();
@@ -289,8 +287,7 @@ bool Decode(std::span<const std::uint8_t> bytes, MergeRecord* out) {
   return Read(bytes, out, [](auto& io, auto& x) { VisitMerge(io, x); }) && IndicesFit(*out);
 }
 bool Decode(std::span<const std::uint8_t> bytes, Ruling* out) {
-  return Read(bytes, out, [](auto& io, auto& x) { VisitRuling(io, x); }) &&
-         out->kind <= Ruling::Kind::kQuarantine;
+  return Read(bytes, out, [](auto& io, auto& x) { VisitRuling(io, x); }) && out->kind <= Ruling::Kind::kQuarantine;
 }
 
 bool Decode(std::span<const std::uint8_t> bytes, merge::SubmapCloud* out) {

@@ -16,13 +16,13 @@ namespace mapweld::store {
 
 // One drive of an agent or of a recording.
 struct DriveInfo {
-  std::string name;                  // unique in a store
-  std::int16_t agent = 0;            // 0: a recording
-  std::int32_t epoch = 0;            // boot count of the agent
-  std::int32_t published = 0;        // keyframes that the agent says it has sent
-  bool ended = false;                // no further keyframes will come
-  bool disputed = false;             // two agents with one id took part: never merged
-  std::uint64_t fingerprint = 0;     // of the recording that it was made from
+  std::string name;               // unique in a store
+  std::int16_t agent = 0;         // 0: a recording
+  std::int32_t epoch = 0;         // boot count of the agent
+  std::int32_t published = 0;     // keyframes that the agent says it has sent
+  bool ended = false;             // no further keyframes will come
+  bool disputed = false;          // two agents with one id took part: never merged
+  std::uint64_t fingerprint = 0;  // of the recording that it was made from
   bool operator==(const DriveInfo&) const = default;
 };
 
@@ -40,19 +40,19 @@ struct PairRecord {
   std::int32_t keyframes_b = 0;
   bool proposed = false;
   double evidence = 0;
-  merge::Overlap overlap;                            // drive_a 0, drive_b 1
+  merge::Overlap overlap;                                // drive_a 0, drive_b 1
   std::vector<std::pair<merge::SubmapKey, bool>> asked;  // drive 0 or 1
 };
 
 // One state of the city in its history.
 struct MergeRecord {
-  std::string when;   // time label, UTC, for people
-  std::string cause;  // "merge", "undo of 7", ...
+  std::string when;       // time label, UTC, for people
+  std::string cause;      // "merge", "undo of 7", ...
   bool is_final = false;  // of a run that came to its end
   std::vector<std::string> drives;
-  std::vector<std::int32_t> keyframes;               // per drive
-  std::vector<std::vector<std::int32_t>> groups;     // indices into drives
-  std::vector<merge::Overlap> overlaps;              // every decision with its evidence
+  std::vector<std::int32_t> keyframes;                  // per drive
+  std::vector<std::vector<std::int32_t>> groups;        // indices into drives
+  std::vector<merge::Overlap> overlaps;                 // every decision with its evidence
   std::vector<std::vector<geom::Pose3>> merged_T_body;  // per drive and keyframe
 };
 
@@ -67,7 +67,7 @@ struct Ruling {
 
 Bytes Encode(const DriveInfo& drive);
 Bytes Encode(const merge::Keyframe& keyframe);
-Bytes Encode(const merge::SubmapCloud& cloud);  // exact: 12 bytes a point
+Bytes Encode(const merge::SubmapCloud& cloud);               // exact: 12 bytes a point
 Bytes EncodedByAgent(std::span<const std::uint8_t> submap);  // core/submap/submap_codec.hpp
 Bytes Encode(const ScanTrajectory& trajectory);
 Bytes Encode(const PairRecord& pair);

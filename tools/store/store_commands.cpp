@@ -89,8 +89,8 @@ void RunUndo(const Arguments& arguments) {
 
 void Apply(CityStore* store, const Ruling& ruling, bool release, const std::string& sentence) {
   if (release && !RemoveRuling(store, ruling)) {
-    throw StoreError(fmt::format("there is no such ruling in {}; 'mapweld history' lists them",
-                                 store->database().path().string()));
+    throw StoreError(
+        fmt::format("there is no such ruling in {}; 'mapweld history' lists them", store->database().path().string()));
   }
   if (!release) AddRuling(store, ruling);
   fmt::print("{}; {} {} -o OUT\n", sentence, kNextMerge, store->database().path().string());
@@ -136,8 +136,8 @@ void AddStoreCommands(CLI::App& app) {
     command->add_option("a", arguments->a, "a drive")->required();
     command->add_option("b", arguments->b, "the other")->required();
   }
-  CLI::App* const quarantine = AddCommand(app, "quarantine", "Leave a drive, or all drives of an agent, out of the merge",
-                                          arguments, RunQuarantine);
+  CLI::App* const quarantine = AddCommand(
+      app, "quarantine", "Leave a drive, or all drives of an agent, out of the merge", arguments, RunQuarantine);
   quarantine->add_option("drive", arguments->a, "a drive, or agent_N for all boots of one")->required();
   for (CLI::App* const command : {withdraw, quarantine}) {
     command->add_flag("--release", arguments->release, "take the ruling back");

@@ -97,7 +97,8 @@ TEST_F(Stores, RefuseANewerSchemaAndNameBothVersions) {
 TEST_F(Stores, BringAnOlderSchemaUpToDate) {
   std::string tables;
   for (const char* name : {"drives", "keyframes", "submaps", "trajectories", "merges"}) {
-    tables += "CREATE TABLE " + std::string(name) + "(id INTEGER PRIMARY KEY, body BLOB NOT NULL, crc INTEGER NOT NULL);";
+    tables +=
+        "CREATE TABLE " + std::string(name) + "(id INTEGER PRIMARY KEY, body BLOB NOT NULL, crc INTEGER NOT NULL);";
   }
   const std::uint32_t crc = RecordChecksum(Table::kDrives, 1, Bytes{'x'});
   Execute(path_, tables + "INSERT INTO drives VALUES(1, x'78', " + std::to_string(crc) +

@@ -60,8 +60,8 @@ TEST(Fsck, SaysWhatNamesSomethingThatIsNotThere) {
   CrashDisk disk(SmallCityFiles());
   CityStore city("city.db", Database::Mode::kExisting, disk.vfs());
   city.database().Remove(Table::kKeyframes, PairKey(1, 3));
-  EXPECT_THAT(Fsck(&city).dangling,
-              ElementsAre("merge 1: keyframes that it placed are not there", "merge 2: keyframes that it placed are not there"));
+  EXPECT_THAT(Fsck(&city).dangling, ElementsAre("merge 1: keyframes that it placed are not there",
+                                                "merge 2: keyframes that it placed are not there"));
   city.database().Remove(Table::kDrives, 2);
   EXPECT_THAT(Fsck(&city).damaged, IsEmpty());
   EXPECT_THAT(Fsck(&city).dangling, testing::Contains("ruling 1: one of its drives is not there"));

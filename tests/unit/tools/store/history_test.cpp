@@ -113,8 +113,9 @@ TEST_F(Histories, ExplainSaysWhichTestDecidedAndTheNumbers) {
   state.overlaps[1].accepted = false;
   state.overlaps[1].test = "cycle";
   RecordMerge(&city_, state);
-  EXPECT_THAT(Explain(&city_, "b", "a"), AllOf(HasSubstr("a = a, b = b"), HasSubstr("overlap accepted, both in group 1"),
-                                               HasSubstr("registration"), HasSubstr("0.75        0.120")));
+  EXPECT_THAT(Explain(&city_, "b", "a"),
+              AllOf(HasSubstr("a = a, b = b"), HasSubstr("overlap accepted, both in group 1"),
+                    HasSubstr("registration"), HasSubstr("0.75        0.120")));
   EXPECT_THAT(Explain(&city_, "b", "c"), AllOf(HasSubstr("overlap refused, in groups 1 and 2"), HasSubstr("cycle")));
   EXPECT_THAT(Explain(&city_, "a", "c"), AllOf(HasSubstr("no overlap"), HasSubstr("descriptor distance")));
   EXPECT_THROW(Explain(&city_, "a", "nobody"), StoreError);

@@ -19,7 +19,8 @@ namespace {
 constexpr std::int32_t kEnough = 1 << 20;
 
 std::int32_t Count(CityStore* city, DriveKey drive) {
-  return static_cast<std::int32_t>(city->database().Keys(Table::kKeyframes, PairKey(drive, 0), PairKey(drive, kEnough)).size());
+  return static_cast<std::int32_t>(
+      city->database().Keys(Table::kKeyframes, PairKey(drive, 0), PairKey(drive, kEnough)).size());
 }
 
 // Goes on where the store is, keyframe by keyframe, and says on the pipe how many are acknowledged.

@@ -69,7 +69,8 @@ TEST(PowerCut, AtAnyWriteLosesNothingAcknowledged) {
   for (std::size_t n = 0; n <= disk.operations(); ++n) {
     for (const Unsynced mode : kModes) {
       for (const std::uint32_t seed : {1U, 2U}) {
-        if (seed == 2 && mode != Unsynced::kReordered && mode != Unsynced::kTorn) continue;  // nothing is left to chance
+        if (seed == 2 && mode != Unsynced::kReordered && mode != Unsynced::kTorn)
+          continue;  // nothing is left to chance
         CheckRecovery(disk.AfterCut(n, mode, seed), run, n);
         ASSERT_FALSE(HasFatalFailure()) << "cut after operation " << n << ", mode " << static_cast<int>(mode);
         ++cuts;
