@@ -48,7 +48,10 @@ class StoredCity final : public MergeCity {
   MergeResult Merge(const MergeConfig& config, Progress* progress) override {
     store::PairMemory memory(&store_, &drives_, keys_, &config);
     const auto rulings = store::Rulings(&store_);
-    memory.SearchUnknown(&submaps_, progress);
+    const int searched = memory.SearchUnknown(&submaps_, progress);
+    fmt::print(stderr, "merge: {} drives in {}; {} pairs of them searched now, {} before\n", drives_.size(),
+               store_.database().path().string(), searched,
+               static_cast<int>(drives_.size() * (drives_.size() - 1) / 2) - searched);
     MergeCache cache;
     memory.Fill(&cache, &submaps_);
     MergeResult result = MergeDrives(drives_, submaps_, config, progress, &cache);

@@ -175,6 +175,16 @@ void Server::Fill(const FleetStore::Snapshot& fleet, merge::MergeCache* cache) {
   store::PairMemory(city_.get(), &fleet.drives, KeysOf(fleet), &options_.merge).Fill(cache, &submaps);
 }
 
+void Server::Keep(const Merged& merged, const merge::MergeCache& cache) {
+  if (city_ == nullptr) return;
+  StoredSubmaps submaps(&link_, &merged.fleet.ids);
+  try {
+    store::PairMemory(city_.get(), &merged.fleet.drives, KeysOf(merged.fleet), &options_.merge).Keep(cache, &submaps);
+  } catch (const store::StoreError& error) {
+    fmt::print(stderr, "serve: the next run has to search all pairs of drives again: {}\n", error.what());
+  }
+}
+
 // Every state whose groups are new, and the last one. The store may fail; the agents are told all the same.
 void Server::Record(const Merged& merged, bool is_final) {
   if (city_ == nullptr) return;
@@ -235,10 +245,7 @@ Server::Merged Server::MergeForGood() {
     const bool more =
         link_.WithStore([&](const FleetStore& store) { return store.counters().submaps > merged_submaps_; });
     if (left == 0 && more) continue;
-    if (city_ != nullptr) {
-      StoredSubmaps submaps(&link_, &merged.fleet.ids);
-      store::PairMemory(city_.get(), &merged.fleet.drives, KeysOf(merged.fleet), &options_.merge).Keep(fresh, &submaps);
-    }
+    Keep(merged, fresh);
     return merged;
   }
 }

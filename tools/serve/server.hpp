@@ -50,6 +50,7 @@ class Server {
   void Record(const Merged& merged, bool is_final);
   Merged MergeForGood();
   void Fill(const FleetStore::Snapshot& fleet, merge::MergeCache* cache);
+  void Keep(const Merged& merged, const merge::MergeCache& cache);
   [[nodiscard]] std::vector<store::DriveKey> KeysOf(const FleetStore::Snapshot& fleet);
   std::size_t Fetch();
   void FetchMap(const Merged& merged);

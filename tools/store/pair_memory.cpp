@@ -47,6 +47,7 @@ std::int64_t PairMemory::KeyOf(int a, int b) const {
 }
 
 std::optional<PairRecord> PairMemory::Known(int a, int b, merge::SubmapSource* submaps) {
+  if (!AreStored(a, b)) return std::nullopt;
   auto pair = store_->Read<PairRecord>(Table::kPairs, KeyOf(a, b));
   if (!pair.has_value() || pair->method != method_) return std::nullopt;
   if (pair->keyframes_a != Count(DriveAt(a)) || pair->keyframes_b != Count(DriveAt(b))) return std::nullopt;
@@ -122,7 +123,7 @@ void PairMemory::Keep(const merge::MergeCache& cache, merge::SubmapSource* subma
     for (int a = 0; a < static_cast<int>(drives_->size()); ++a) {
       for (int b = a + 1; b < static_cast<int>(drives_->size()); ++b) {
         if (std::find(refused.begin(), refused.end(), std::pair(a, b)) != refused.end()) continue;
-        if (Known(a, b, submaps).has_value()) continue;
+        if (!AreStored(a, b) || Known(a, b, submaps).has_value()) continue;
         const auto outcome = cache.FindPair(*drives_, a, b, &prepared);
         if (outcome.has_value()) Put(a, b, *outcome);
       }

@@ -15,7 +15,7 @@ namespace mapweld::store {
 
 class PairMemory {
  public:
-  // keys: of `drives` in the store. All must outlive it.
+  // keys: of `drives` in the store, 0 for one that is not in it. All must outlive it.
   PairMemory(CityStore* store, const std::vector<merge::Drive>* drives, std::vector<DriveKey> keys,
              const merge::MergeConfig* config);
 
@@ -31,6 +31,9 @@ class PairMemory {
   [[nodiscard]] std::optional<PairRecord> Known(int a, int b, merge::SubmapSource* submaps);
   void Put(int a, int b, const merge::PairOutcome& outcome);
   [[nodiscard]] std::int64_t KeyOf(int a, int b) const;
+  [[nodiscard]] bool AreStored(int a, int b) const {
+    return keys_[static_cast<std::size_t>(a)] != 0 && keys_[static_cast<std::size_t>(b)] != 0;
+  }
   [[nodiscard]] const merge::Drive& DriveAt(int i) const { return (*drives_)[static_cast<std::size_t>(i)]; }
 
   CityStore* store_;
