@@ -9,8 +9,6 @@
 namespace mapweld::serve {
 namespace {
 
-constexpr int kModeEnded = 4;
-
 DriveId IdOf(const store::StoredDrive& drive) {
   const bool recording = drive.info.agent == 0;
   return {drive.info.agent, recording ? static_cast<std::int32_t>(drive.key) : drive.info.epoch};

@@ -11,8 +11,6 @@
 namespace mapweld::serve {
 namespace {
 
-constexpr int kModeEnded = 4;
-
 // The same keyframe sent again is the same to the bit; only another vehicle sends another.
 bool IsSame(const merge::Keyframe& x, const merge::Keyframe& y) {
   return x.t.ns == y.t.ns && x.odom_T_body.t == y.odom_T_body.t &&

@@ -27,6 +27,8 @@ struct FleetCounters {
   std::uint64_t broken_submaps = 0;  // complete, but refused by the decoder
 };
 
+inline constexpr int kModeEnded = 4;  // health_t::mode: the drive is over
+
 // A submap of which every piece has come.
 struct WholeSubmap {
   DriveId id;
