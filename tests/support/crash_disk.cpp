@@ -172,11 +172,14 @@ int CrashDisk::Count(Operation operation) {
 CrashDisk::Files CrashDisk::AfterCut(std::size_t n, Unsynced mode, std::uint32_t seed) const {
   std::mt19937 random(seed);
   std::map<std::string, std::size_t> synced;  // operations before this one are on the disk
+  std::map<std::string, bool> deleted;
   for (std::size_t i = 0; i < n; ++i) {
+    const Operation& operation = log_[i];
+    if (operation.kind == Operation::kSync) synced[operation.file] = i + 1;
     // A directory keeps its order: what was deleted before the file was made anew is gone.
-    const bool settles = log_[i].kind == Operation::kSync ||
-                         (i > 0 && log_[i].kind == Operation::kWrite && log_[i - 1].kind == Operation::kDelete);
-    if (settles) synced[log_[i].file] = log_[i].kind == Operation::kSync ? i + 1 : i;
+    bool& gone = deleted[operation.file];
+    if (gone && operation.kind == Operation::kWrite) synced[operation.file] = i;
+    gone = operation.kind == Operation::kDelete;
   }
   Files files = initial_;
   std::map<std::string, bool> torn;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace mapweld::serve {
@@ -63,9 +64,11 @@ bool FleetJournal::Commit(Clock::time_point now, std::mutex* fleet_mutex) {
 
 void FleetJournal::CollectKeyframes() {
   std::map<std::pair<DriveId, std::int32_t>, const mapweldlcm::keyframe_t*> fresh;  // the first of each
+  std::set<DriveId> disputed;
   for (const mapweldlcm::keyframe_t& message : keyframes_) {
     const DriveId id{message.agent_id, message.epoch};
-    if (fleet_->IsDisputed(id) || fleet_->HasKeyframe(id, message.index)) continue;
+    if (fleet_->Contradicts(message)) disputed.insert(id);
+    if (disputed.contains(id) || fleet_->IsDisputed(id) || fleet_->HasKeyframe(id, message.index)) continue;
     fresh.emplace(std::pair(id, message.index), &message);
   }
   for (const auto& [key, message] : fresh) {

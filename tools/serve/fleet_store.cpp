@@ -53,21 +53,20 @@ void FleetStore::Add(const mapweldlcm::keyframe_t& message) {
   const DriveId id{message.agent_id, message.epoch};
   DriveData& drive = drives_[id];
   ++drive.keyframe_messages;
-  const merge::Keyframe keyframe = FromMessage(message);
-  const auto known = drive.keyframes.find(message.index);
-  if (known != drive.keyframes.end() && IsSame(known->second, keyframe)) {
-    ++counters_.repeated_keyframes;
-    return;
-  }
-  if (known != drive.keyframes.end() && !drive.disputed) {
+  const bool contradicts = Contradicts(message);
+  if (contradicts && !drive.disputed) {
     drive.left_out = !IsComplete(id);
     drive.disputed = true;
+  }
+  if (!contradicts && drive.keyframes.contains(message.index)) {
+    ++counters_.repeated_keyframes;
+    return;
   }
   if (drive.disputed) {
     ++counters_.disputed_keyframes;
     return;
   }
-  drive.keyframes.emplace(message.index, keyframe);
+  drive.keyframes.emplace(message.index, FromMessage(message));
   Advance(&drive);
   ++counters_.keyframes;
 }
@@ -149,6 +148,15 @@ std::vector<std::int32_t> FleetStore::MissingKeyframes(const DriveId& id, std::s
     if (!drive->keyframes.contains(i)) missing.push_back(i);
   }
   return missing;
+}
+
+bool FleetStore::Contradicts(const mapweldlcm::keyframe_t& message) const {
+  const DriveId id{message.agent_id, message.epoch};
+  const DriveData* drive = Find(id);
+  if (drive == nullptr) return false;
+  const auto known = drive->keyframes.find(message.index);
+  if (known != drive->keyframes.end()) return !IsSame(known->second, FromMessage(message));
+  return IsComplete(id);  // one more than there were
 }
 
 bool FleetStore::HasKeyframe(const DriveId& id, std::int32_t index) const {

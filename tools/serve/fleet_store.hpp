@@ -76,6 +76,8 @@ class FleetStore {
 
   // Keyframes that the agent has published (by its health or by later ones) and that have not arrived. At most `most`.
   [[nodiscard]] std::vector<std::int32_t> MissingKeyframes(const DriveId& id, std::size_t most) const;
+  // Can this keyframe not be of the vehicle whose drive it claims to be of?
+  [[nodiscard]] bool Contradicts(const mapweldlcm::keyframe_t& message) const;
   [[nodiscard]] bool HasKeyframe(const DriveId& id, std::int32_t index) const;
   // Null while not complete.
   [[nodiscard]] const merge::SubmapCloud* FindSubmap(const DriveId& id, std::int32_t keyframe) const;

@@ -162,6 +162,7 @@ TEST(FleetJournal, AnIntruderWithATakenIdNeitherOverwritesNorIsForgotten) {
   Host host(&disk);
   EXPECT_TRUE(host.fleet().IsDisputed({1, 1}));
   EXPECT_TRUE(host.fleet().Drives().drives.empty());
+  EXPECT_EQ(host.city().Keyframes(1).size(), 2U) << "nothing of the intruder is on the disk";
   EXPECT_EQ(host.city().Keyframes(1).at(0).odom_T_body.t.y(), 0);
 }
 

@@ -72,12 +72,16 @@ TEST_F(Stores, KeepAllOfATransactionOrNothing) {
 }
 
 TEST_F(Stores, RefuseASecondProcessAndNameTheFirst) {
-  const Database database(path_, Database::Mode::kCreate);
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    std::ofstream(directory_.File("error")) << OpenError(path_);
+    char go = 0;
+    if (::read(ends[0], &go, 1) == 1) std::ofstream(directory_.File("error")) << OpenError(path_);
     ::_exit(0);
   }
+  const Database database(path_, Database::Mode::kCreate);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
   ASSERT_EQ(::waitpid(child, nullptr, 0), child);
   std::ifstream file(directory_.File("error"));
   const std::string error{std::istreambuf_iterator<char>(file), {}};

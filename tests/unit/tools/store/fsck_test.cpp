@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/support/crash_disk.hpp"
@@ -44,7 +45,7 @@ TEST(Fsck, NamesTheDamagedRecordAndOnlyThatIsLeftOut) {
   const Bytes body = Encode(test::SmallKeyframe(1, 2));
   const auto at = std::search(bytes.begin(), bytes.end(), body.begin(), body.end());
   ASSERT_NE(at, bytes.end());
-  at[40] ^= 4U;
+  at[40] ^= 4;
   CrashDisk disk(std::move(files));
   CityStore city("city.db", Database::Mode::kExisting, disk.vfs());
   EXPECT_THAT(Fsck(&city).damaged, ElementsAre("keyframe 2 of agent_2"));

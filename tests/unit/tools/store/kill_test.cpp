@@ -51,7 +51,8 @@ TEST(Kill, AtAnyMomentLosesNothingAcknowledged) {
   const int kills = wanted != nullptr ? std::atoi(wanted) : 40;
   std::mt19937 random(1);
   std::int32_t acknowledged = 0;
-  for (int i = 0; i < kills; ++i) {
+  // On a busy machine a process may be killed before it has done anything: some more, then.
+  for (int i = 0; i < kills || (acknowledged < kills && i < 20 * kills); ++i) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const pid_t child = ::fork();

@@ -3,6 +3,9 @@
 // there, and the run goes on to the same end.
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "tests/support/crash_disk.hpp"
 #include "tests/support/small_city.hpp"
 #include "tools/store/fsck.hpp"
@@ -26,7 +29,8 @@ struct Acknowledged {
 std::vector<Acknowledged> Run(CrashDisk* disk) {
   std::vector<Acknowledged> acknowledged;
   const auto steps = SmallCity::Steps();
-  for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>(0, 5), {5, steps.size()}}) {
+  const std::pair<std::size_t, std::size_t> halves[] = {{0, 5}, {5, steps.size()}};
+  for (const auto& [from, to] : halves) {
     CityStore city("city.db", Database::Mode::kCreate, disk->vfs());
     for (std::size_t i = from; i < to; ++i) {
       steps[i](&city);

@@ -10,7 +10,7 @@
 namespace mapweld::store {
 namespace {
 
-MergeRecord Merge() {
+MergeRecord SomeMerge() {
   MergeRecord record;
   record.when = "2026-01-01 00:00:00";
   record.cause = "merge";
@@ -27,12 +27,12 @@ MergeRecord Merge() {
   return record;
 }
 
-PairRecord Pair() {
+PairRecord SomePair() {
   PairRecord pair;
   pair.method = 0x1234567890ABCDEF;
   pair.keyframes_a = 3;
   pair.evidence = 1.0 / 3;
-  pair.overlap = Merge().overlaps[0];
+  pair.overlap = SomeMerge().overlaps[0];
   pair.asked = {{{0, 7}, true}, {{1, 9}, false}};
   return pair;
 }
@@ -57,8 +57,8 @@ void ExpectExact(const T& value) {
 TEST(RecordCodec, ReadsExactlyWhatWasWritten) {
   ExpectExact(DriveInfo{"agent_3", 3, 2, 17, true, false, 99});
   ExpectExact(test::SmallKeyframe(1, 2));
-  ExpectExact(Merge());
-  ExpectExact(Pair());
+  ExpectExact(SomeMerge());
+  ExpectExact(SomePair());
   ExpectExact(ScanTrajectory{{{1}, {2}}, {{}, {}}, {0.0, 1.0 / 3}});
   ExpectExact(Ruling{Ruling::Kind::kRefusePair, "a", "b", "now"});
   merge::SubmapCloud cloud;
@@ -67,7 +67,7 @@ TEST(RecordCodec, ReadsExactlyWhatWasWritten) {
 }
 
 TEST(RecordCodec, RefusesWhatContradictsItself) {
-  MergeRecord record = Merge();
+  MergeRecord record = SomeMerge();
   record.groups = {{0, 2}};
   MergeRecord out;
   EXPECT_FALSE(Decode(Encode(record), &out)) << "a drive that it does not list";
