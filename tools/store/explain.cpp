@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::size_t kLoopsShown = 20;
 
-StoredDrive Named(CityStore* store, const std::string& name) {
-  auto drive = store->FindDrive(name);
-  if (!drive.has_value()) {
-    throw StoreError(fmt::format("the store {} holds no drive called '{}'", store->database().path().string(), name));
-  }
-  return *drive;
-}
-
 std::int32_t IndexIn(const MergeRecord& record, const std::string& name) {
   const auto at = std::find(record.drives.begin(), record.drives.end(), name);
   return at == record.drives.end() ? -1 : static_cast<std::int32_t>(at - record.drives.begin());
@@ -66,15 +58,16 @@ std::string Loops(const merge::Overlap& overlap) {
 }  // namespace
 
 std::string Explain(CityStore* store, const std::string& name_a, const std::string& name_b) {
-  StoredDrive first = Named(store, name_a);
-  StoredDrive second = Named(store, name_b);
+  StoredDrive first = DriveCalled(store, name_a);
+  StoredDrive second = DriveCalled(store, name_b);
   const auto last = LastMerge(store);
   if (!last.has_value()) {
     throw StoreError(fmt::format("the store {} holds no merge yet", store->database().path().string()));
   }
   const MergeRecord& record = last->record;
   // In the order of the merge, whose records speak of a and b.
-  if (IndexIn(record, name_a) > IndexIn(record, name_b)) std::swap(first, second);
+  const bool swapped = IndexIn(record, name_b) >= 0 && IndexIn(record, name_b) < IndexIn(record, name_a);
+  if (swapped) std::swap(first, second);
   const std::int32_t a = IndexIn(record, first.info.name);
   const std::int32_t b = IndexIn(record, second.info.name);
   std::string text = fmt::format("a = {}, b = {}; merge {} of {} UTC ({})\n", first.info.name, second.info.name,

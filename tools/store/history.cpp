@@ -33,14 +33,6 @@ std::set<std::pair<std::string, std::string>> Accepted(const MergeRecord& record
   return pairs;
 }
 
-void CheckName(CityStore* store, const std::string& name) {
-  if (store->FindDrive(name).has_value()) return;
-  std::string known;
-  for (const StoredDrive& drive : store->Drives()) known += (known.empty() ? "" : ", ") + drive.info.name;
-  throw StoreError(fmt::format("the store {} holds no drive called '{}'; it holds {}",
-                               store->database().path().string(), name, known.empty() ? "none" : known));
-}
-
 bool Same(const Ruling& x, const Ruling& y) {
   return x.kind == y.kind && x.drive_a == y.drive_a && x.drive_b == y.drive_b;
 }
@@ -146,6 +138,16 @@ std::int64_t RecordMerge(CityStore* store, const MergeRecord& record) {
   return number;
 }
 
+StoredDrive DriveCalled(CityStore* store, const std::string& name) {
+  std::string known;
+  for (StoredDrive& drive : store->Drives()) {
+    if (drive.info.name == name) return std::move(drive);
+    known += (known.empty() ? "" : ", ") + drive.info.name;
+  }
+  throw StoreError(fmt::format("the store {} holds no drive called '{}'; it holds {}",
+                               store->database().path().string(), name, known.empty() ? "none" : known));
+}
+
 std::vector<NumberedRuling> Rulings(CityStore* store) {
   std::vector<NumberedRuling> rulings;
   store->database().ForEach(Table::kRulings, 0, INT64_MAX, [&](const Record& record) {
@@ -157,8 +159,8 @@ std::vector<NumberedRuling> Rulings(CityStore* store) {
 
 void AddRuling(CityStore* store, const Ruling& ruling) {
   store->Write([&] {
-    CheckName(store, ruling.drive_a);
-    if (ruling.kind == Ruling::Kind::kRefusePair) CheckName(store, ruling.drive_b);
+    (void)DriveCalled(store, ruling.drive_a);
+    if (ruling.kind == Ruling::Kind::kRefusePair) (void)DriveCalled(store, ruling.drive_b);
     for (const NumberedRuling& known : Rulings(store)) {
       if (Same(known.ruling, ruling)) return;
     }

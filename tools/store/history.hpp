@@ -35,6 +35,8 @@ MergeRecord ToRecord(const std::vector<merge::Drive>& drives, const merge::Merge
 // Adds the record as the newest, unless drives, decisions and poses are those of the newest already. Gives its number.
 std::int64_t RecordMerge(CityStore* store, const MergeRecord& record);
 
+// Throws StoreError, with the names that there are.
+StoredDrive DriveCalled(CityStore* store, const std::string& name);
 std::vector<NumberedRuling> Rulings(CityStore* store);
 // Adds it if it is not there. Throws StoreError for a drive that the store does not hold.
 void AddRuling(CityStore* store, const Ruling& ruling);

@@ -47,6 +47,10 @@ void RunFsck(const Arguments& arguments) {
   }
 }
 
+std::string Counted(std::size_t n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
 std::string GroupSizes(const MergeRecord& record) {
   std::string text;
   for (const auto& group : record.groups) text += (text.empty() ? "" : " + ") + std::to_string(group.size());
@@ -59,10 +63,11 @@ void RunHistory(const Arguments& arguments) {
   const MergeRecord* before = nullptr;
   for (const NumberedMerge& merge : merges) {
     const MergeRecord& record = merge.record;
-    int accepted = 0;
+    std::size_t accepted = 0;
     for (const merge::Overlap& overlap : record.overlaps) accepted += overlap.accepted ? 1 : 0;
-    fmt::print("{:4}  {} UTC  {}: {} drives in {} groups ({}), {} overlaps\n", merge.number, record.when, record.cause,
-               record.drives.size(), record.groups.size(), GroupSizes(record), accepted);
+    fmt::print("{:4}  {} UTC  {}: {} in {} ({}), {}\n", merge.number, record.when, record.cause,
+               Counted(record.drives.size(), "drive"), Counted(record.groups.size(), "group"), GroupSizes(record),
+               Counted(accepted, "overlap"));
     for (const std::string& change : Changes(before, record)) fmt::print("        {}\n", change);
     before = &record;
   }

@@ -58,7 +58,7 @@ TEST(Kill, AtAnyMomentLosesNothingAcknowledged) {
     const pid_t child = ::fork();
     if (child == 0) Fill(path, ends[1]);
     ::close(ends[1]);
-    ::usleep(random() % 40'000);
+    ::usleep(static_cast<useconds_t>(random() % 40'000));
     ASSERT_EQ(::kill(child, SIGKILL), 0);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);

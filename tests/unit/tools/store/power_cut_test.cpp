@@ -26,7 +26,7 @@ struct Acknowledged {
 };
 
 // The whole run, closed once in the middle, which moves the log into the file.
-std::vector<Acknowledged> Run(CrashDisk* disk) {
+std::vector<Acknowledged> FillCity(CrashDisk* disk) {
   std::vector<Acknowledged> acknowledged;
   const auto steps = SmallCity::Steps();
   const std::pair<std::size_t, std::size_t> halves[] = {{0, 5}, {5, steps.size()}};
@@ -68,7 +68,7 @@ void CheckRecovery(const CrashDisk::Files& files, const std::vector<Acknowledged
 
 TEST(PowerCut, AtAnyWriteLosesNothingAcknowledged) {
   CrashDisk disk;
-  const std::vector<Acknowledged> run = Run(&disk);
+  const std::vector<Acknowledged> run = FillCity(&disk);
   int cuts = 0;
   for (std::size_t n = 0; n <= disk.operations(); ++n) {
     for (const Unsynced mode : kModes) {
@@ -86,7 +86,7 @@ TEST(PowerCut, AtAnyWriteLosesNothingAcknowledged) {
 
 TEST(PowerCut, DuringTheRecoveryFromOneLosesNothingEither) {
   CrashDisk disk;
-  const std::vector<Acknowledged> run = Run(&disk);
+  const std::vector<Acknowledged> run = FillCity(&disk);
   int cuts = 0;
   for (std::size_t n = 0; n <= disk.operations(); n += 3) {
     const CrashDisk::Files left = disk.AfterCut(n, Unsynced::kReordered, 3);
