@@ -91,12 +91,15 @@ class Side {
 // Carries datagrams between two networks, and loses, repeats and delays some.
 class Relay {
  public:
-  Relay(std::uint16_t a, std::uint16_t b, double loss, std::uint32_t seed) : loss_(loss), random_(seed), a_(a), b_(b) {}
+  Relay(std::uint16_t a, std::uint16_t b, double loss, std::uint32_t seed)
+      : loss_(loss), whole_loss_(loss), random_(seed), a_(a), b_(b) {}
 
   void Step() {
     Carry(a_, b_);
     Carry(b_, a_);
   }
+  // The two networks no longer reach each other, or again.
+  void Cut(bool cut) { loss_ = cut ? 1 : whole_loss_; }
   [[nodiscard]] bool good() const { return a_.good() && b_.good(); }
   [[nodiscard]] int carried() const { return carried_; }
   [[nodiscard]] int lost() const { return lost_; }
@@ -123,6 +126,7 @@ class Relay {
   }
 
   double loss_;
+  double whole_loss_;
   std::mt19937 random_;
   Side a_;
   Side b_;
@@ -213,7 +217,9 @@ TEST_P(LossyNetwork, BringsEveryKeyframeAndEveryWantedSubmap) {
   serve::FleetLink host(Url(other_port));
   serve::Requester requester(&host);
   const serve::DriveId id{3, 1};
-  requester.Want(id, wanted);
+  std::vector<serve::Requester::Submap> submaps;
+  for (const std::int32_t keyframe : wanted) submaps.push_back({id, keyframe});
+  requester.Want(submaps);
 
   const auto complete = [&] {
     return host.WithStore([&](const serve::FleetStore& store) { return store.IsComplete(id); }) &&
@@ -251,6 +257,66 @@ TEST_P(LossyNetwork, BringsEveryKeyframeAndEveryWantedSubmap) {
         agent.submap_bytes(), static_cast<unsigned long long>(store.counters().repeated_keyframes));
   });
   EXPECT_EQ(host.refused(), 0U);
+}
+
+// The agent drives on while nobody hears it, and the host is killed and started again in that time. When the network
+// heals, everything comes that was not there, and nothing comes twice that was on the disk.
+TEST(PartitionedNetwork, HealsWithEverythingFromTheTimeApart) {
+  using Clock = std::chrono::steady_clock;
+  using namespace std::chrono_literals;
+  constexpr std::int32_t kKeyframes = 200;
+  const auto port = static_cast<std::uint16_t>(20'000 + ::getpid() % 20'000);
+  const auto other_port = static_cast<std::uint16_t>(port + 20'001);
+  const test::TemporaryDirectory directory;
+  SmallAgent agent(Url(port));
+  Relay relay(port, other_port, 0.1, 7);
+  if (!agent.good() || !relay.good()) GTEST_SKIP() << "no multicast on this machine: " << std::strerror(errno);
+  const serve::DriveId id{3, 1};
+  auto city = std::make_unique<store::CityStore>(directory.File("city.db"));
+  auto host = std::make_unique<serve::FleetLink>(Url(other_port), city.get());
+  auto requester = std::make_unique<serve::Requester>(host.get());
+  std::int32_t published = 0;
+  std::size_t kept = 0;  // on the disk when the host was killed
+  auto next = Clock::now();
+  const auto deadline = Clock::now() + 60s;
+  const auto complete = [&] {
+    return published == kKeyframes &&
+           host->WithStore([&](const serve::FleetStore& store) { return store.IsComplete(id); });
+  };
+  while (Clock::now() < deadline && !complete()) {
+    if (Clock::now() >= next) {
+      next += 10ms;
+      if (published < kKeyframes) {
+        agent.PublishKeyframe();
+        ++published;
+        if (published == 50) relay.Cut(true);
+        if (published == 150) {
+          requester.reset();
+          host.reset();
+          city = nullptr;
+          city = std::make_unique<store::CityStore>(directory.File("city.db"));
+          kept = city->Keyframes(1).size();
+          host = std::make_unique<serve::FleetLink>(Url(other_port), city.get());
+          requester = std::make_unique<serve::Requester>(host.get());
+          relay.Cut(false);
+        }
+      }
+      agent.PublishHealth(published == kKeyframes);
+    }
+    agent.Step();
+    relay.Step();
+    requester->Step(Clock::now());
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(complete());
+  EXPECT_GE(kept, 10U);
+  EXPECT_LE(kept, 50U);
+  host->WithStore([&](const serve::FleetStore& store) {
+    ASSERT_EQ(store.Drives().drives.size(), 1U);
+    EXPECT_EQ(store.Drives().drives[0].keyframes.size(), static_cast<std::size_t>(kKeyframes));
+  });
+  host.reset();
+  EXPECT_EQ(city->Keyframes(1).size(), static_cast<std::size_t>(kKeyframes));
 }
 
 INSTANTIATE_TEST_SUITE_P(PerCent, LossyNetwork, testing::Values(0, 10, 30));

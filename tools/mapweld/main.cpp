@@ -12,6 +12,7 @@
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
+#include "tools/store/store_commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Merges the LiDAR maps of many vehicles into one, without GPS and without an initial guess.", "mapweld");
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
+  mapweld::store::AddStoreCommands(app);
   mapweld::eval::AddEvalCommand(app);
   mapweld::sim::AddSimCommand(app);
   mapweld::replay::AddReplayCommand(app);
