@@ -17,7 +17,7 @@
 namespace mapweld::can {
 
 struct XsensOptions {
-  XsensIds ids;
+  XsensIds ids{};
   SampleTimeUnit sample_time_unit = SampleTimeUnit::k100us;
   InertialOrder inertial_order = InertialOrder::kAsNamed;
   time::ClockMode clock_mode = time::ClockMode::kShared;

@@ -36,12 +36,13 @@ bool XsensStart::Continues(const XsensGroup& group, std::uint32_t step) const {
   return agreeing_ == 0 || (step <= 2 * step_ && step_ <= 2 * step);
 }
 
-// Of the run from first_ to last_; kDetect when the stamps fit neither unit.
+// Of the run from first_ to last_; kDetect when the stamps do not tell yet.
 SampleTimeUnit XsensStart::Conclude() const {
   if (unit_ != SampleTimeUnit::kDetect) return unit_;
   const std::uint32_t run = last_.sample_time_ticks - first_.sample_time_ticks;
   if (run > kGroups * kMost100usTicks) return SampleTimeUnit::k1us;
-  if (run <= kGroups * kSure100usTicks || !first_.stamped || !last_.stamped) return SampleTimeUnit::k100us;
+  if (run <= kGroups * kSure100usTicks || !stamped_) return SampleTimeUnit::k100us;
+  if (!first_.stamped || !last_.stamped) return SampleTimeUnit::kDetect;  // stamps are there, but not where it matters
   const std::int64_t elapsed_ns = (last_.first_receive - first_.first_receive).ns;
   // Within a factor of 3; the units differ by one of 100.
   const auto fits = [&](std::int64_t tick_ns) {
@@ -58,6 +59,7 @@ bool XsensStart::Push(const XsensGroup& group) {
   const bool agrees = order != InertialOrder::kDetect && Continues(group, step) && order == OrderOf(last_);
   agreeing_ = agrees ? agreeing_ + 1 : 0;
   if (!agrees) first_ = group;
+  stamped_ = group.stamped || (agrees && stamped_);
   step_ = step;
   last_ = group;
   if (agreeing_ < kGroups) return false;

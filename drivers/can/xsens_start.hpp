@@ -49,6 +49,7 @@ class XsensStart {
   XsensGroup first_;   // of the run
   XsensGroup last_;
   std::uint32_t step_ = 0;  // ticks, to last_
+  bool stamped_ = false;    // any group of the run
 };
 
 }  // namespace mapweld::can

@@ -155,7 +155,9 @@ TEST_P(PowerCut, LosesNoAcknowledgedRecordAndInventsNone) {
       spool = std::make_unique<RecordSpool>();
       ASSERT_EQ(spool->Open(path_.c_str(), kFileBytes), Status::kOk);
       ASSERT_TRUE(spool->Has(KeyOf(99)));
-      if (spool_was_roomy) ASSERT_NO_FATAL_FAILURE(RequireGood(*spool, cut));
+      if (spool_was_roomy) {
+        ASSERT_NO_FATAL_FAILURE(RequireGood(*spool, cut));
+      }
       ASSERT_NO_FATAL_FAILURE(RequireRight(spool.get()));
     }
   }
