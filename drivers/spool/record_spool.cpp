@@ -63,8 +63,8 @@ Status RecordSpool::Start() {
     errno = why;
     return Status::kIo;
   }
-  if (const Status status = BeginSegment(0, 1); status != Status::kOk) return status;
-  return ::fsync(fd_) == 0 ? Status::kOk : Status::kIo;
+  if (::fsync(fd_) != 0) return Status::kIo;  // the size, too
+  return BeginSegment(0, 1);
 }
 
 // false when there is no segment to go on with.
@@ -83,7 +83,6 @@ bool RecordSpool::Recover() {
   for (std::uint32_t done = 0; done < newest; done = use_[active_]) {
     active_ = FirstAfter(done);
     end_ = SegmentHeader::kBytes;
-    // Whatever is in a segment was synced before the next was begun: only the last one can hold torn contents.
     while (RecoverRecord(use_[active_] == newest)) ++counters_.recovered;
   }
   return newest > 0;
@@ -124,11 +123,13 @@ bool RecordSpool::RecoverRecord(bool may_be_torn) {
   return true;
 }
 
-// The segment is empty from now on. A power failure between this and the next Sync leaves it empty too, or as it was.
+// The segment is empty from now on. What lies in the others is on the disk before, and that this one is empty is before
+// anything is written into it: so only the newest segment can hold torn contents, and no old record half overwritten.
 Status RecordSpool::BeginSegment(std::size_t segment, std::uint32_t use) {
+  const SegmentHeaderBytes header = EncodeSegmentHeader({.use = use, .file_bytes = file_bytes_});
   if (::fdatasync(fd_) != 0) return Status::kIo;
   Forget(segment);
-  if (!WriteAt(fd_, EncodeSegmentHeader({.use = use, .file_bytes = file_bytes_}), Begin(segment))) return Status::kIo;
+  if (!WriteAt(fd_, header, Begin(segment)) || ::fdatasync(fd_) != 0) return Status::kIo;
   use_[segment] = use;
   active_ = segment;
   end_ = SegmentHeader::kBytes;
