@@ -156,6 +156,7 @@ class AgentOnABus : public testing::Test {
   Imu imu_{&bus_};
   std::int64_t error_frames_ = 0;
   pid_t agent_ = -1;
+  std::unique_ptr<bus::UdpmBus> lcm_ = std::make_unique<bus::UdpmBus>();
 
  private:
   bool ReadHealth(int wait_ms) {
@@ -173,7 +174,6 @@ class AgentOnABus : public testing::Test {
   bool heard_ = false;
   std::string url_;
   test::TemporaryDirectory state_;
-  std::unique_ptr<bus::UdpmBus> lcm_ = std::make_unique<bus::UdpmBus>();
 };
 
 TEST_F(AgentOnABus, TurnsEveryGroupOfA400HzImuIntoASample) {
@@ -219,21 +219,20 @@ TEST_F(AgentOnABus, GoesOnAfterTheInterfaceWasDown) {
 }
 
 TEST_F(AgentOnABus, GoesOnAfterTheAdapterWasReplugged) {
+  imu_.RunFor(200ms);
+  ASSERT_EQ(std::system("ip link del vcan0"), 0);
+  imu_.RunFor(200ms);  // into nothing
+  // Another device in between, so that the interface gets another number.
+  ASSERT_EQ(std::system("ip link add other0 type vcan; ip link add vcan0 type vcan; ip link set vcan0 up;"
+                        "ip link del other0"),
+            0);
+  ASSERT_TRUE(bus_.Connect()) << std::strerror(errno);
+  imu_.RunFor(1s);  // within which the agent has it again
+  ASSERT_NO_FATAL_FAILURE(NextHealth());
+  const std::int64_t before = health_.imu_samples;
   imu_.RunFor(500ms);
-  for (int i = 0; i < 2; ++i) {
-    ASSERT_EQ(std::system("ip link del vcan0"), 0);
-    imu_.RunFor(200ms);  // into nothing
-    ASSERT_EQ(std::system("ip link add other0 type vcan; ip link add vcan0 type vcan; ip link set vcan0 up;"
-                          "ip link del other0"),
-              0);
-    ASSERT_TRUE(bus_.Connect()) << std::strerror(errno);
-    imu_.RunFor(1s);  // within which the agent has it again
-    ASSERT_NO_FATAL_FAILURE(NextHealth());
-    const std::int64_t before = health_.imu_samples;
-    imu_.RunFor(500ms);
-    ASSERT_NO_FATAL_FAILURE(NextHealth());
-    EXPECT_GE(health_.imu_samples - before, 200 - 10);
-  }
+  ASSERT_NO_FATAL_FAILURE(NextHealth());
+  EXPECT_GE(health_.imu_samples - before, 200 - 10);
   EXPECT_EQ(health_.heap_calls, 0);
 }
 
@@ -268,7 +267,7 @@ TEST_F(AgentOnABus, RefusesAndCountsAMessageOfAnotherVersion) {
   std::array<std::uint8_t, 1024> bytes{};
   const auto n = messages::Encode(request, bytes);
   ASSERT_TRUE(n.ok());
-  for (const std::uint8_t flipped : {0, 1}) {
+  for (const int flipped : {0, 1}) {
     ASSERT_NO_FATAL_FAILURE(NextHealth());
     const std::int64_t before = health_.bus_rejected;
     bytes[7] = static_cast<std::uint8_t>(bytes[7] ^ flipped);  // of the type's fingerprint

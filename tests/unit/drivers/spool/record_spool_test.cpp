@@ -148,7 +148,7 @@ TEST_F(RecordSpoolTest, GivesUpTheOldestQuarterWhenTheIndexIsFull) {
     ASSERT_EQ(Append(0, static_cast<std::int32_t>(i), content), Status::kOk) << i;
     ASSERT_EQ(spool_->counters().given_up > 0, i >= kCap.spool_records) << i;
   }
-  EXPECT_TRUE(Has(0, 2 * kCap.spool_records - 1));
+  EXPECT_TRUE(Has(0, static_cast<std::int32_t>(2 * kCap.spool_records - 1)));
 }
 
 TEST_F(RecordSpoolTest, DropsTheNewcomerWhenOneQuarterAloneFillsTheIndex) {
