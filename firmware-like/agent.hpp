@@ -80,7 +80,7 @@ class Agent final : private pipeline::AgentSink {
   RateGroup idle_health_{Milliseconds(100)};   // of real time
   RateGroup replug_{Milliseconds(200)};        // looks for an interface that was unplugged
   RateGroup remind_{AnswerQueue::kRemindEvery};
-  RateGroup slow_{Milliseconds(1000)};         // spool to disk, watchdog
+  RateGroup slow_{Milliseconds(1000)};  // spool to disk, watchdog
 };
 
 }  // namespace mapweld::executive

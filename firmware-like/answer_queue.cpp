@@ -49,8 +49,7 @@ bool AnswerQueue::Step(TimeNs now) {
   while (LoadNext()) {
     const Answer answer = queue_.front();
     const bool is_submap = answer.kind == static_cast<std::uint8_t>(RecordKind::kSubmap);
-    const std::size_t next =
-        is_submap ? std::min(Telemetry::kChunkBytes, bytes_ - offset_) : bytes_;
+    const std::size_t next = is_submap ? std::min(Telemetry::kChunkBytes, bytes_ - offset_) : bytes_;
     // A chunk is padded to its full size on the wire; the budget counts what leaves the machine.
     if (!budget_.TrySpend(static_cast<std::int64_t>(kCap.datagram_bytes), now)) return true;
     if (is_submap) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers the host's requests from the spool, a chunk at a time, never faster than the byte budget. Keyframes and submaps
-// of earlier boots are answered like those of this one. The host may not know how far an earlier drive came, because what
-// was said last was lost or never sent: the last keyframe of one earlier boot after the other is said again now and then,
-// and the host asks for what lies before it.
+// Answers the host's requests from the spool, a chunk at a time, never faster than the byte budget. Keyframes and
+// submaps of earlier boots are answered like those of this one. The host may not know how far an earlier drive came,
+// because what was said last was lost or never sent: the last keyframe of one earlier boot after the other is said
+// again now and then, and the host asks for what lies before it.
 #pragma once
 
 #include <array>

@@ -45,8 +45,8 @@ class SocketCanPort final : public CanPort {
   Status Open(const char* interface, std::span<const std::uint32_t> wanted_ids);
 
   // After the interface ceased to exist: looks for one of the same name and goes on with it, by the same descriptor.
-  // Costs next to nothing otherwise; call a few times per second, because a lost socket gives no more events. kOk: there
-  // was nothing to do, or it is done; kNotReady: there is no such interface yet; kIo with errno.
+  // Costs next to nothing otherwise; call a few times per second, because a lost socket gives no more events. kOk:
+  // there was nothing to do, or it is done; kNotReady: there is no such interface yet; kIo with errno.
   Status Reconnect();
 
   // Takes over an open descriptor whose datagrams are struct can_frame (a socketpair in tests). Made non-blocking.

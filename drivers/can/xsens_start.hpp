@@ -3,12 +3,12 @@
 //
 // The unit of SampleTime. The vendor's pages say 100 us, the 2019 manual and the DBC file 1 us; it depends on the
 // firmware. From one group to the next up to kSure100usTicks ticks can only be of 100 us, because no MTi sends 2000
-// groups per second; above kMost100usTicks they can only be of 1 us, because odometry needs 5 groups per second. Between
-// the two the receive stamps of the whole run tell; without stamps it is 100 us.
+// groups per second; above kMost100usTicks they can only be of 1 us, because odometry needs 5 groups per second.
+// Between the two the receive stamps of the whole run tell; without stamps it is 100 us.
 //
-// Which of the two inertial messages is the acceleration: the manual swaps 0x061 and 0x062 against the driver. A vehicle
-// measures 0.6 to 1.4 g at its start and does not turn by 170 deg/s; read as the other quantity, gravity is a turn by
-// 281 deg/s and a turn is next to no acceleration. So the two can be told apart, or neither makes sense.
+// Which of the two inertial messages is the acceleration: the manual swaps 0x061 and 0x062 against the driver. A
+// vehicle measures 0.6 to 1.4 g at its start and does not turn by 170 deg/s; read as the other quantity, gravity is a
+// turn by 281 deg/s and a turn is next to no acceleration. So the two can be told apart, or neither makes sense.
 #pragma once
 
 #include <cstdint>

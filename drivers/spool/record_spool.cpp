@@ -137,8 +137,8 @@ Status RecordSpool::BeginSegment(std::size_t segment, std::uint32_t use) {
 }
 
 void RecordSpool::Forget(std::size_t segment) {
-  const auto* kept = std::remove_if(index_.begin(), index_.end(),
-                                    [&](const Entry& entry) { return SegmentOf(entry) == segment; });
+  const auto* kept =
+      std::remove_if(index_.begin(), index_.end(), [&](const Entry& entry) { return SegmentOf(entry) == segment; });
   const auto left = static_cast<std::size_t>(kept - index_.begin());
   counters_.given_up += index_.size() - left;
   index_.resize(left);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keyframes and submaps on the disk, those of earlier boots too, so that they can be sent when the host asks for them.
 // One file of fixed size in kSegments segments, filled one after the other; when all are full, the one filled first is
-// given up and used again: what is lost is the oldest, and counted. A restart finds every record again that was whole on
-// the disk. Owns the index, 16 bytes per record of kCap.spool_records. No heap. Look-up: one pass over the index.
+// given up and used again: what is lost is the oldest, and counted. A restart finds every record again that was whole
+// on the disk. Owns the index, 16 bytes per record of kCap.spool_records. No heap. Look-up: one pass over the index.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace mapweld::spool {
 
 class RecordSpool {
  public:
-  static constexpr std::uint64_t kMaxFileBytes = 8ULL << 32U;    // offsets are kept in units of 8 bytes
+  static constexpr std::uint64_t kMaxFileBytes = 8ULL << 32U;   // offsets are kept in units of 8 bytes
   static constexpr std::uint32_t kMaxContentBytes = 0xFF'FFFF;  // of one record
 
   struct Counters {
@@ -73,7 +73,7 @@ class RecordSpool {
   struct Entry {
     std::int32_t epoch;
     std::int32_t index;
-    std::uint32_t offset8;  // of the record, in units of 8 bytes
+    std::uint32_t offset8;      // of the record, in units of 8 bytes
     std::uint32_t length_kind;  // length << 8 | kind
     [[nodiscard]] Key key() const { return {epoch, static_cast<std::uint8_t>(length_kind), index}; }
     [[nodiscard]] std::uint32_t length() const { return length_kind >> 8U; }
@@ -102,7 +102,7 @@ class RecordSpool {
   std::uint64_t segment_bytes_ = 0;
   std::array<std::uint32_t, kSegments> use_{};  // 0: empty
   std::size_t active_ = 0;
-  std::uint64_t end_ = 0;  // in the active segment: where the next record goes
+  std::uint64_t end_ = 0;                         // in the active segment: where the next record goes
   FixedVector<Entry, kCap.spool_records> index_;  // from the oldest to the newest
   Counters counters_;
 };

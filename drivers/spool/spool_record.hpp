@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layout of a spool file: kSegments parts of equal size. Each begins with a header and holds records one after the
-// other, each starting on a multiple of 8. All integers are little-endian. Headers and contents have checksums, so that a
-// record cut off by a power failure is seen; a record names the use of its segment, so that what lay there before is
+// other, each starting on a multiple of 8. All integers are little-endian. Headers and contents have checksums, so that
+// a record cut off by a power failure is seen; a record names the use of its segment, so that what lay there before is
 // never taken for new.
 #pragma once
 

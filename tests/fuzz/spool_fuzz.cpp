@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The input is a spool file found at boot. First byte: whether the segments' headers are made valid, and the checksums of
-// the records, so that the code behind them is reached.
+// The input is a spool file found at boot. First byte: whether the segments' headers are made valid, and the checksums
+// of the records, so that the code behind them is reached.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -15,8 +15,8 @@ namespace mapweld::doctor {
 
 struct CanLink {
   bool up = false;
-  bool is_can = false;  // real or virtual
-  std::string state;    // ERROR-ACTIVE ...; empty for a virtual one
+  bool is_can = false;          // real or virtual
+  std::string state;            // ERROR-ACTIVE ...; empty for a virtual one
   std::int64_t bitrate = 0;     // 0 when it has none: virtual, or never set
   std::int64_t restart_ms = 0;  // after bus-off; 0: never
   std::int64_t bus_off = 0;     // times since it was made

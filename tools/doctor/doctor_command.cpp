@@ -54,8 +54,7 @@ std::vector<Finding> CanFindings(const DoctorOptions& options) {
   std::vector<Finding> findings{CheckCanKernel()};
   if (findings.back().verdict != Verdict::kGood) return findings;
   std::string complaint;
-  const auto links =
-      RunIp({"-details", "-statistics", "link", "show", "dev", options.can_interface}, &complaint);
+  const auto links = RunIp({"-details", "-statistics", "link", "show", "dev", options.can_interface}, &complaint);
   for (Finding& finding : CheckCan(options.can_interface, ReadCanLink(links), messages, options.imu_hz)) {
     findings.push_back(std::move(finding));
   }
@@ -110,7 +109,8 @@ void AddDoctorCommand(CLI::App& app) {
       ->check(CLI::Range(1.0, 10'000.0))
       ->capture_default_str();
   command->add_option("--imu-ids", options->imu_ids, "the MTi's identifiers, as for the agent");
-  CLI::Option* const dbc = command->add_option("--imu-dbc", options->imu_dbc, "the IMU's CAN database, as for the agent");
+  CLI::Option* const dbc =
+      command->add_option("--imu-dbc", options->imu_dbc, "the IMU's CAN database, as for the agent");
   CLI::Option* const signals =
       command->add_option("--imu-signals", options->imu_signals, "its six signals, as for the agent");
   dbc->needs(signals);

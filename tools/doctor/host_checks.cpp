@@ -55,7 +55,8 @@ Finding CheckClockSource(const std::string& current, const std::string& availabl
     return {"clock source", Verdict::kWarning, what + ": every receive stamp pays for it",
             fmt::format("echo {} > {}current_clocksource", fast, kClockSources)};
   }
-  return {"clock source", Verdict::kWarning, what + ", and this machine has no faster one; every receive stamp pays for it",
+  return {"clock source", Verdict::kWarning,
+          what + ", and this machine has no faster one; every receive stamp pays for it",
           fmt::format("dmesg | grep -i clocksource  # why; all: {}", available)};
 }
 
@@ -94,7 +95,8 @@ Finding CheckStateDirectory(const std::string& path, std::uint64_t spool_bytes) 
                   fmt::format("echo N > {}  # N: larger than any boot count this vehicle ever had", epoch.string()));
   }
   struct statvfs disk {};
-  if (::statvfs(path.c_str(), &disk) != 0) return failed(fmt::format("{}: {}", path, std::strerror(errno)), "df " + path);
+  if (::statvfs(path.c_str(), &disk) != 0)
+    return failed(fmt::format("{}: {}", path, std::strerror(errno)), "df " + path);
   const std::uint64_t there = fs::file_size(fs::path(path) / "spool", error);
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize + (error ? 0 : there);
   if (free < spool_bytes) {

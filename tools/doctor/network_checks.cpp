@@ -57,7 +57,9 @@ Finding CheckLoopback(const bus::UdpmAddress& address) {
   constexpr std::string_view kChannel = "mapweld-doctor";
   bool heard = false;
   if (bus->Open(url, kChannel) == Status::kOk && bus->Publish(kChannel, kNothing) == Status::kOk) {
-    const auto take = [](void* flag, std::string_view, std::span<const std::uint8_t>) { *static_cast<bool*>(flag) = true; };
+    const auto take = [](void* flag, std::string_view, std::span<const std::uint8_t>) {
+      *static_cast<bool*>(flag) = true;
+    };
     for (int i = 0; i < 100 && !heard; ++i) {
       pollfd waiting{.fd = bus->fd(), .events = POLLIN, .revents = 0};
       (void)::poll(&waiting, 1, 10);

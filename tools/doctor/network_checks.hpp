@@ -10,7 +10,8 @@
 
 namespace mapweld::doctor {
 
-// `routes`: `ip -json route get GROUP`, or `complaint`: what it said instead. `outward`: the interface towards the host.
+// `routes`: `ip -json route get GROUP`, or `complaint`: what it said instead. `outward`: the interface towards the
+// host.
 Finding CheckRoute(const bus::UdpmAddress& address, const nlohmann::json& routes, const std::string& complaint,
                    const std::string& outward);
 Finding CheckTtl(const bus::UdpmAddress& address, const nlohmann::json& routes, const std::string& outward);

@@ -7,9 +7,9 @@
 
 namespace mapweld::spy {
 
-// What is missing from the numbers that one sender gives its messages, 1 apart and wrapping at 2^32. A number that comes
-// late, within kWindow of the highest, is no longer missing; one that comes twice counts once. A larger step, in either
-// direction, is a sender that started anew.
+// What is missing from the numbers that one sender gives its messages, 1 apart and wrapping at 2^32. A number that
+// comes late, within kWindow of the highest, is no longer missing; one that comes twice counts once. A larger step, in
+// either direction, is a sender that started anew.
 class SequenceTracker {
  public:
   static constexpr std::uint32_t kWindow = 1024;

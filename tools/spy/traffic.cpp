@@ -79,10 +79,8 @@ void Traffic::Take(TimeNs t, const Sender& sender, std::span<const std::uint8_t>
 ChannelReport Traffic::ReportOf(const std::string& name, Channel* channel, TimeNs now) const {
   std::deque<Message>& recent = channel->recent;
   while (!recent.empty() && now - recent.front().t > window_) recent.pop_front();
-  ChannelReport report{.channel = name,
-                       .type = channel->type,
-                       .messages = channel->messages,
-                       .refused = channel->refused};
+  ChannelReport report{
+      .channel = name, .type = channel->type, .messages = channel->messages, .refused = channel->refused};
   const double seconds = std::max(std::min(now - start_, window_).Seconds(), 1e-9);
   double sum = 0;
   double sum_of_squares = 0;

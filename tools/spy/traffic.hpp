@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who says what on an LCM network, how often, how regularly, and what of it was lost. Fed with datagrams; asks no clock.
+// Who says what on an LCM network, how often, how regularly, and what of it was lost. Fed with datagrams; asks no
+// clock.
 #pragma once
 
 #include <compare>
@@ -45,8 +46,8 @@ struct SenderReport {
 };
 
 struct TrafficReport {
-  double seconds = 0;             // observed
-  std::uint64_t not_lcm = 0;      // datagrams that no LCM program can have sent
+  double seconds = 0;                 // observed
+  std::uint64_t not_lcm = 0;          // datagrams that no LCM program can have sent
   std::vector<SenderReport> senders;  // by address
 };
 

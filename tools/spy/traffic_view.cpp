@@ -35,8 +35,8 @@ std::string TrafficTable(const TrafficReport& report, const std::string& lcm_url
     }
   }
   if (!report.senders.empty()) {
-    out += fmt::format("{:<{}}  {:<{}} {:>9} {:>8} {:>11} {:>10} {:>11} {:>7} {:>6}\n", "sender, channel", width, "type",
-                       type_width, "messages", "Hz", "bytes/s", "jitter ms", "longest ms", "refused", "lost");
+    out += fmt::format("{:<{}}  {:<{}} {:>9} {:>8} {:>11} {:>10} {:>11} {:>7} {:>6}\n", "sender, channel", width,
+                       "type", type_width, "messages", "Hz", "bytes/s", "jitter ms", "longest ms", "refused", "lost");
   }
   for (const SenderReport& sender : report.senders) {
     out += fmt::format("{:<{}}  {:<{}} {:>9} {:>8} {:>11} {:>10} {:>11} {:>7} {:>6}\n", Address(sender.sender), width,
@@ -59,8 +59,10 @@ std::string TrafficJson(const TrafficReport& report, const std::string& lcm_url,
                               {"not_lcm", report.not_lcm},
                               {"senders", nlohmann::ordered_json::array()}};
   for (const SenderReport& sender : report.senders) {
-    nlohmann::ordered_json row{{"address", Address(sender.sender)}, {"messages", sender.messages},
-                               {"lost", sender.lost},               {"repeated", sender.repeated},
+    nlohmann::ordered_json row{{"address", Address(sender.sender)},
+                               {"messages", sender.messages},
+                               {"lost", sender.lost},
+                               {"repeated", sender.repeated},
                                {"channels", nlohmann::ordered_json::array()}};
     for (const ChannelReport& c : sender.channels) {
       row["channels"].push_back({{"channel", Printable(c.channel)},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A million random things happen to the pool of slots: every message that was begun is in a slot, delivered, given up or
-// dropped, and nothing is ever two of these or none.
+// A million random things happen to the pool of slots: every message that was begun is in a slot, delivered, given up
+// or dropped, and nothing is ever two of these or none.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -62,7 +62,8 @@ TEST(ReassemblyPool, LosesNoSlotInAMillionRandomSteps) {
     ASSERT_EQ(refusal == Refusal::kNone, status != Status::kBadInput);
   }
   const UdpmReassembly::Counters& end = pool->counters();
-  for (const std::uint64_t often : {end.completed, end.evicted, end.contradicted, end.repeated}) EXPECT_GT(often, 1000U);
+  for (const std::uint64_t often : {end.completed, end.evicted, end.contradicted, end.repeated})
+    EXPECT_GT(often, 1000U);
 }
 
 }  // namespace

@@ -80,8 +80,10 @@ TEST(XsensStart, DecidesAThousandStartsWithinTwoSecondsAndNeverWrong) {
 }
 
 TEST(XsensStart, HearsNoStampsAndStillTellsWhatTheTicksTell) {
-  for (const auto& [step, unit] : {std::pair(25U, SampleTimeUnit::k100us), {2000U, SampleTimeUnit::k100us},
-                                   {2500U, SampleTimeUnit::k1us}, {200'000U, SampleTimeUnit::k1us}}) {
+  for (const auto& [step, unit] : {std::pair(25U, SampleTimeUnit::k100us),
+                                   {2000U, SampleTimeUnit::k100us},
+                                   {2500U, SampleTimeUnit::k1us},
+                                   {200'000U, SampleTimeUnit::k1us}}) {
     XsensStart detector(SampleTimeUnit::kDetect, InertialOrder::kAsNamed);
     XsensGroup group;
     group.stamped = false;
@@ -113,16 +115,15 @@ TEST(XsensCodec, ReadsSwappedHighRateMessagesTheRightWayRound) {
   XsensIds ids;
   ASSERT_EQ(XsensIds::Parse("005,006,011,061,062", &ids), Status::kOk);
   for (const bool swapped : {false, true}) {
-    XsensCodec codec({.ids = ids,
-                      .sample_time_unit = SampleTimeUnit::kDetect,
-                      .inertial_order = InertialOrder::kDetect});
+    XsensCodec codec(
+        {.ids = ids, .sample_time_unit = SampleTimeUnit::kDetect, .inertial_order = InertialOrder::kDetect});
     sensor::ImuSample sample;
     int samples = 0;
     for (std::uint32_t k = 0; k < 50; ++k) {
       for (CanFrame frame : test::Group({.ticks = 25 * k,
-                                         .counter = static_cast<std::uint16_t>(k),
-                                         .gyro = {0, 0, 51},
-                                         .accel = {10, 0, 2511}})) {
+                            .counter = static_cast<std::uint16_t>(k),
+                            .gyro = {0, 0, 51},
+                            .accel = {10, 0, 2511}})) {
         if (frame.id == 0x032) frame.id = swapped ? 0x062 : 0x061;
         if (frame.id == 0x034) frame.id = swapped ? 0x061 : 0x062;
         if (codec.Push(frame, &sample) != Status::kOk) continue;

@@ -61,11 +61,13 @@ std::vector<std::pair<std::size_t, std::size_t>> Returns(const Payload& payload)
   return out;
 }
 
-// The clouds were made by Autoware's driver (nebula). It reads distances and beams as we do, but places lasers elsewhere
-// on the circle, by how far the sensor has turned when they fire. Its source, vlp16_decoder.cpp, says how: every block
-// begins at the azimuth that was looked up as the successor of the block before it, and turns on to its own successor.
+// The clouds were made by Autoware's driver (nebula). It reads distances and beams as we do, but places lasers
+// elsewhere on the circle, by how far the sensor has turned when they fire. Its source, vlp16_decoder.cpp, says how:
+// every block begins at the azimuth that was looked up as the successor of the block before it, and turns on to its own
+// successor.
 //   - The last block of a packet, in dual return mode the last two, has none and is not turned at all.
-//   - In dual return mode the successor is two blocks on. A second return (odd block) so begins where the sensor will be
+//   - In dual return mode the successor is two blocks on. A second return (odd block) so begins where the sensor will
+//   be
 //     after its firings, a step too far, and finds itself there again: no turn within the block.
 //   - Azimuths are rounded to 0.01 degrees: 5 mm at 57 m.
 //   - VLP-32C lasers fire in pairs; it turns them as if they fired one by one, twice as far.
@@ -86,8 +88,8 @@ double VendorTurnsFurther(const VelodyneModel& model, const Payload& payload, st
   return step * part_of_block(1) - ours;
 }
 
-void AddAsTheVendorTurns(const VelodyneModel& model, const Payload& payload,
-                         std::span<const sensor::LidarPoint> points, test::CloudIndex* index) {
+void AddAsTheVendorTurns(const VelodyneModel& model, const Payload& payload, std::span<const sensor::LidarPoint> points,
+                         test::CloudIndex* index) {
   const auto returns = Returns(payload);
   ASSERT_EQ(returns.size(), points.size());
   for (std::size_t n = 0; n < points.size(); ++n) {

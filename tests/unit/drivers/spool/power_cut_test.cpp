@@ -78,7 +78,7 @@ using Bytes = std::vector<std::uint8_t>;
 using test::Unsynced;
 
 constexpr std::uint64_t kFileBytes = 32 << 10;  // four segments of some five records each
-constexpr std::int32_t kRecords = 28;  // more than fit: the last segment is the first one again
+constexpr std::int32_t kRecords = 28;           // more than fit: the last segment is the first one again
 
 Bytes Content(std::int32_t index) {
   Bytes out(static_cast<std::size_t>(1 + index * 397 % 3000));

@@ -27,13 +27,12 @@ struct Stored {
 
 class RandomSpool {
  public:
-  RandomSpool() {
-    EXPECT_EQ(spool_->Open(path_.c_str(), kFileBytes), Status::kOk);
-  }
+  RandomSpool() { EXPECT_EQ(spool_->Open(path_.c_str(), kFileBytes), Status::kOk); }
   ~RandomSpool() { ::close(fd_); }
 
   void Append() {
-    const Stored record{{epoch_, static_cast<std::uint8_t>(random_() % 2), next_++}, Bytes(1 + random_() % 300, Byte())};
+    const Stored record{{epoch_, static_cast<std::uint8_t>(random_() % 2), next_++},
+                        Bytes(1 + random_() % 300, Byte())};
     ASSERT_EQ(spool_->Append(record.key, record.content), Status::kOk);
     model_.push_back(record);
     Forget();

@@ -43,8 +43,7 @@ TEST(CanChecks, MissAnInterfaceThatIsNotThereOrIsNoCan) {
 TEST(CanChecks, BringUpAnInterfaceThatIsDownWithABitRateThatFits) {
   const auto findings = Check(With("/0/flags", nlohmann::json::array({"NOARP", "ECHO"})));
   ASSERT_EQ(ExitCode(findings), 1);
-  EXPECT_EQ(findings[0].repair,
-            "ip link set can0 down; ip link set can0 up type can bitrate 500000 restart-ms 100");
+  EXPECT_EQ(findings[0].repair, "ip link set can0 down; ip link set can0 up type can bitrate 500000 restart-ms 100");
 }
 
 TEST(CanChecks, TellAPassiveBusFromOneThatIsOff) {

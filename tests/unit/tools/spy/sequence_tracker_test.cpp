@@ -37,8 +37,8 @@ TEST(SequenceTracker, CountsExactlyWhatIsLeftOutRepeatedAndReordered) {
     }
     // The first and the last stay where they are: what lies outside of them is unknown.
     for (std::size_t i = 1; i + 52 < numbers.size(); i += 50) {
-      std::shuffle(numbers.begin() + static_cast<std::ptrdiff_t>(i), numbers.begin() + static_cast<std::ptrdiff_t>(i) + 50,
-                   random);
+      std::shuffle(numbers.begin() + static_cast<std::ptrdiff_t>(i),
+                   numbers.begin() + static_cast<std::ptrdiff_t>(i) + 50, random);
     }
     SequenceTracker tracker;
     std::uint64_t seen_before = 0;

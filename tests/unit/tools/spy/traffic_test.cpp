@@ -72,13 +72,11 @@ TEST(Traffic, PutsFragmentsTogetherAndCallsAMessageWithoutOneLost) {
   Traffic traffic({0}, FromSeconds(10));
   const auto piece = [&](std::uint32_t sequence, int number) {
     const auto offset = static_cast<std::uint32_t>(30 * number);
-    traffic.Take({1}, kAgent,
-                 bus::test::Fragment({.sequence = sequence,
-                                      .size = 90,
-                                      .offset = offset,
-                                      .number = static_cast<unsigned>(number),
-                                      .count = 3},
-                                     bus::test::Pattern(30)));
+    traffic.Take(
+        {1}, kAgent,
+        bus::test::Fragment(
+            {.sequence = sequence, .size = 90, .offset = offset, .number = static_cast<unsigned>(number), .count = 3},
+            bus::test::Pattern(30)));
   };
   for (const int number : {2, 0, 1, 1}) piece(5, number);  // any order, and one comes again
   for (std::uint32_t sequence = 6; sequence < 6 + 65; ++sequence) {
@@ -96,7 +94,7 @@ TEST(Traffic, NamesWhatTheAgentsWouldRefuse) {
   auto payload = Payload<mapweldlcm::health_t>();
   traffic.Take({1}, kAgent, bus::test::Short(0, "MW.3.HEALTH", payload));
   traffic.Take({2}, kAgent, bus::test::Short(1, "MW.3.POSE", payload));  // not what belongs there
-  ++payload[7];                                                         // another version of the type
+  ++payload[7];                                                          // another version of the type
   traffic.Take({3}, kAgent, bus::test::Short(2, "MW.4.HEALTH", payload));
   traffic.Take({4}, kAgent, bus::test::Short(3, "OTHER", payload));  // not ours to judge
   const auto channels = traffic.Report({10}).senders.at(0).channels;
