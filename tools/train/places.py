@@ -54,6 +54,12 @@ class Places:
             yield (i, v), (j, w)
 
 
+def open_places(text):
+    """FILE.npz, FILE.npz:train or FILE.npz:test."""
+    path, _, part = text.partition(":")
+    return Places(path, part or None)
+
+
 def draw_batch(sets, rng, neighbourhoods, places):
     """images [n, 3, 32, 64], same [n, n] and other [n, n]: which pairs are of one place, which of two."""
     weight = np.sqrt([len(s.index) for s in sets])

@@ -14,7 +14,7 @@ import torch.nn.functional as F
 from inputs import plan_image
 from model_blob import pack_weights, write_model
 from network import SPECTRUM_OUTPUTS, TrainedCode, fuse, image_features
-from places import Places, recall
+from places import open_places, recall
 from submaps import read_submaps
 
 
@@ -179,8 +179,8 @@ def main():
     model = TrainedCode()
     model.load_state_dict(torch.load(a.model))
     rng = np.random.default_rng(0)
-    sets = [Places(path) for path in a.calibrate]
-    images = np.concatenate([s.images(np.sort(rng.choice(len(s.drive), min(256, len(s.drive)), replace=False)), 0)
+    sets = [open_places(text) for text in a.calibrate]
+    images = np.concatenate([s.images(np.sort(rng.choice(s.index, min(256, len(s.index)), replace=False)), 0)
                              for s in sets])
     integer = IntegerCode(model, images, a.share)
     write_model(a.out, a.name, integer.tensors())
@@ -195,7 +195,7 @@ def main():
             return model(torch.from_numpy(pixels.astype(np.float32) / 64))[1].numpy()
 
     for path in a.check:
-        places = Places(path)
+        places = open_places(path)
         pixels = places.image[:, 0]
         cosine = (in_parts(network_only, pixels) * in_parts(integer.network, pixels)).sum(1)
         f, q = in_parts(floating, pixels), in_parts(integer, pixels)

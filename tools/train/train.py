@@ -15,15 +15,10 @@ import numpy as np
 import torch
 
 from network import TrainedCode, fuse
-from places import Places, draw_batch, recall
+from places import draw_batch, open_places, recall
 
 
 SHARE = 0.07  # of the network in what is reported as "both"
-
-
-def open_places(text):
-    path, _, part = text.partition(":")
-    return Places(path, part or None)
 
 
 def describe(model, places, variant=0):
