@@ -73,12 +73,13 @@ std::vector<Finding> NetworkFindings(const DoctorOptions& options) {
   std::string unused;
   const std::string by_default = Device(RunIp({"route", "show", "default"}, &unused));
   const std::string outward = by_default.empty() ? "eth0" : by_default;
-  return {CheckRoute(address, routes, complaint, outward),
-          CheckTtl(address, routes, outward),
-          CheckLoopback(address),
-          CheckReceiveBuffer("LCM", static_cast<int>(address.receive_buffer_bytes)),
-          CheckReceiveBuffer("LiDAR", lidar::UdpPort::kReceiveBufferBytes),
-          CheckLidarPort(options.lidar_port)};
+  std::vector<Finding> findings{CheckRoute(address, routes, complaint, outward), CheckTtl(address, routes, outward)};
+  // Without a route no message can arrive.
+  if (findings.front().verdict == Verdict::kGood) findings.push_back(CheckLoopback(address));
+  findings.push_back(CheckReceiveBuffer("LCM", static_cast<int>(address.receive_buffer_bytes)));
+  findings.push_back(CheckReceiveBuffer("LiDAR", lidar::UdpPort::kReceiveBufferBytes));
+  findings.push_back(CheckLidarPort(options.lidar_port));
+  return findings;
 }
 
 void Run(const DoctorOptions& options) {

@@ -26,8 +26,8 @@ std::string FindingsText(const std::vector<Finding>& findings) {
     out += fmt::format("{:<8} {:<18} {}\n", Word(finding.verdict), finding.check, finding.what);
     if (!finding.repair.empty()) out += fmt::format("{:<27} repair: {}\n", "", finding.repair);
   }
-  return out + fmt::format("{} checks, {} failed, {} warnings\n", findings.size(), Count(findings, Verdict::kFailure),
-                           Count(findings, Verdict::kWarning));
+  return out + fmt::format("checks: {}, failed: {}, warnings: {}\n", findings.size(),
+                           Count(findings, Verdict::kFailure), Count(findings, Verdict::kWarning));
 }
 
 std::string FindingsJson(const std::vector<Finding>& findings) {

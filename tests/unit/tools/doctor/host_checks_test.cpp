@@ -40,7 +40,7 @@ TEST(Findings, AreCountedInTextAndJson) {
                                       {"three", Verdict::kFailure, "bad \xff", "do that"}};
   EXPECT_EQ(ExitCode(findings), 1);
   const std::string text = FindingsText(findings);
-  EXPECT_NE(text.find("3 checks, 1 failed, 1 warnings"), std::string::npos) << text;
+  EXPECT_NE(text.find("checks: 3, failed: 1, warnings: 1"), std::string::npos) << text;
   EXPECT_NE(text.find("repair: do that"), std::string::npos);
   const auto json = nlohmann::json::parse(FindingsJson(findings));
   EXPECT_EQ(json["failed"], 1);
