@@ -13,8 +13,8 @@
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
-#include "tools/store/store_commands.hpp"
 #include "tools/spy/spy_command.hpp"
+#include "tools/store/store_commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Merges the LiDAR maps of many vehicles into one, without GPS and without an initial guess.", "mapweld");
