@@ -12,33 +12,37 @@ namespace {
 
 using geom::Pose3;
 using geom::Vec6d;
+using pose_graph::Edge;
+
+geom::Mat6d InformationOf(double sigma_m, double sigma_tilt_rad, double sigma_yaw_rad) {
+  Vec6d sigma;
+  sigma << sigma_m, sigma_m, sigma_m, sigma_tilt_rad, sigma_tilt_rad, sigma_yaw_rad;
+  return pose_graph::InformationOf(sigma);
+}
 
 // Errors of the odometry grow with the root of the path.
-GraphEdge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const GraphConfig& config) {
+Edge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const GraphConfig& config) {
   constexpr double kStep_m = 5;
   const double growth = std::sqrt(std::clamp((to.path_m - from.path_m) / kStep_m, 0.2, 100.0));
-  GraphEdge edge;
+  Edge edge;
   edge.a = node;
   edge.b = node + 1;
   edge.a_T_b = from.odom_T_body.Inverse() * to.odom_T_body;
-  edge.sigma.head<3>().setConstant(config.odometry_sigma_m * growth);
-  edge.sigma[3] = edge.sigma[4] = config.odometry_sigma_tilt_rad * growth;
-  edge.sigma[5] = config.odometry_sigma_yaw_rad * growth;
+  edge.information = InformationOf(config.odometry_sigma_m * growth, config.odometry_sigma_tilt_rad * growth,
+                                   config.odometry_sigma_yaw_rad * growth);
   return edge;
 }
 
-GraphEdge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
+Edge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
                    const GraphConfig& config) {
   // From level frames to body frames.
   const Pose3 body_T_level_a = a.odom_T_body.Inverse() * geom::Level(a.odom_T_body);
   const Pose3 body_T_level_b = b.odom_T_body.Inverse() * geom::Level(b.odom_T_body);
-  GraphEdge edge;
+  Edge edge;
   edge.a = node_a;
   edge.b = node_b;
   edge.a_T_b = body_T_level_a * loop.a_T_b * body_T_level_b.Inverse();
-  edge.sigma.head<3>().setConstant(config.loop_sigma_m);
-  edge.sigma[3] = edge.sigma[4] = config.loop_sigma_tilt_rad;
-  edge.sigma[5] = config.loop_sigma_yaw_rad;
+  edge.information = InformationOf(config.loop_sigma_m, config.loop_sigma_tilt_rad, config.loop_sigma_yaw_rad);
   return edge;
 }
 
@@ -77,6 +81,7 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
   }
   RobustConfig robust;
   robust.max_iterations = config.max_iterations;
+  robust.min_places = 1;  // registration and the walk along the overlap have verified every pair
   const RobustResult solved = SolveRobust(graph, robust);
   for (std::size_t i = 0; i < used.size(); ++i) used[i]->weight = solved.loop_weight[i];
   GroupSolution out;
