@@ -1,77 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/city_graph.hpp"
 
-#include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <random>
 #include <utility>
+
+#include "tests/bench/street_walk.hpp"
 
 namespace mapweld::bench {
 namespace {
 
 using geom::Pose3;
 using geom::Vec3d;
-using geom::Vec6d;
 
-constexpr double kBlock_m = 100;
-constexpr double kStep_m = 5;
 constexpr double kLoopReach_m = 4;
-constexpr int kStepsPerBlock = static_cast<int>(kBlock_m / kStep_m);
-
-class Dice {
- public:
-  explicit Dice(unsigned seed) : random_(seed) {}
-  double Uniform() { return (random_() + 0.5) / 4294967296.0; }
-  int Below(int n) { return static_cast<int>(Uniform() * n); }
-  double Normal() { return std::sqrt(-2 * std::log(Uniform())) * std::cos(2 * std::numbers::pi * Uniform()); }
-  Pose3 Noise(double sigma_m, double sigma_rad) {
-    Vec6d delta;
-    for (int i = 0; i < 6; ++i) delta[i] = (i < 3 ? sigma_m : sigma_rad) * Normal();
-    return geom::Retract({}, delta);
-  }
-
- private:
-  std::mt19937 random_;
-};
-
-// A walk through the grid, on a lane of its own beside the middle of the street.
-std::vector<Pose3> Drive(const CityConfig& config, Dice* dice) {
-  static constexpr std::array<std::array<int, 2>, 4> kWay = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-  std::vector<Pose3> out;
-  int x = dice->Below(config.blocks);
-  int y = dice->Below(config.blocks);
-  int way = dice->Below(4);
-  const double lane_m = 3 * (dice->Uniform() - 0.5);
-  int step = 0;
-  for (int i = 0; i < config.poses; ++i, ++step) {
-    if (step == kStepsPerBlock) {
-      step = 0;
-      x += kWay[static_cast<std::size_t>(way)][0];
-      y += kWay[static_cast<std::size_t>(way)][1];
-      const double turn = dice->Uniform();
-      if (turn < 0.4) way = (way + (turn < 0.2 ? 1 : 3)) % 4;
-      if (x < 1) way = 0;
-      if (x > config.blocks - 1) way = 2;
-      if (y < 1) way = 1;
-      if (y > config.blocks - 1) way = 3;
-    }
-    const double yaw_rad = way * std::numbers::pi / 2;
-    const Vec3d along(std::cos(yaw_rad), std::sin(yaw_rad), 0);
-    const Vec3d left(-along.y(), along.x(), 0);
-    Vec3d at = kBlock_m * Vec3d(x, y, 0) + step * kStep_m * along + lane_m * left;
-    at.z() = 5 * std::sin(at.x() / 500) + 5 * std::cos(at.y() / 333);
-    out.push_back({at, geom::ExpSo3({0, 0, yaw_rad})});
-  }
-  return out;
-}
-
-Vec6d Sigma(double metres, double radians) {
-  Vec6d out;
-  out << metres, metres, metres, radians, radians, radians;
-  return out;
-}
 
 // Of every other drive the nearest pose within reach of pose i; of its own only where it comes back.
 std::map<int, int> Partners(const CityGraph& city, const std::map<std::pair<int, int>, std::vector<int>>& cells, int i,
@@ -111,7 +53,7 @@ CityGraph MakeCity(const CityConfig& config) {
   const geom::Mat6d odometry = pose_graph::InformationOf(Sigma(kOdometry_m, kOdometry_rad));
   const geom::Mat6d loop = pose_graph::InformationOf(Sigma(kLoop_m, kLoop_rad));
   for (int drive = 0; drive < config.drives; ++drive) {
-    const std::vector<Pose3> way = Drive(config, &dice);
+    const std::vector<Pose3> way = WalkStreets(config.poses, config.blocks, &dice);
     for (std::size_t k = 0; k < way.size(); ++k) {
       const int node = static_cast<int>(nodes.size());
       if (k == 0) {

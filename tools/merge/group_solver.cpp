@@ -46,6 +46,17 @@ Edge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a
   return edge;
 }
 
+const Keyframe& KeyframeOf(const std::vector<Drive>& drives, int drive, int keyframe) {
+  return drives[static_cast<std::size_t>(drive)].keyframes[static_cast<std::size_t>(keyframe)];
+}
+
+RobustConfig RobustConfigOf(const GraphConfig& config) {
+  RobustConfig out;
+  out.max_iterations = config.max_iterations;
+  out.min_places = 1;  // registration and the walk along the overlap have verified every pair
+  return out;
+}
+
 }  // namespace
 
 GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
@@ -70,19 +81,14 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
     const auto b = first_node.find(overlap.drive_b);
     if (!overlap.accepted || a == first_node.end() || b == first_node.end()) continue;
     for (Loop& loop : overlap.loops) {
-      const Keyframe& keyframe_a =
-          drives[static_cast<std::size_t>(overlap.drive_a)].keyframes[static_cast<std::size_t>(loop.keyframe_a)];
-      const Keyframe& keyframe_b =
-          drives[static_cast<std::size_t>(overlap.drive_b)].keyframes[static_cast<std::size_t>(loop.keyframe_b)];
+      const Keyframe& keyframe_a = KeyframeOf(drives, overlap.drive_a, loop.keyframe_a);
+      const Keyframe& keyframe_b = KeyframeOf(drives, overlap.drive_b, loop.keyframe_b);
       graph.loops.push_back(
           LoopEdge(keyframe_a, keyframe_b, loop, a->second + loop.keyframe_a, b->second + loop.keyframe_b, config));
       used.push_back(&loop);
     }
   }
-  RobustConfig robust;
-  robust.max_iterations = config.max_iterations;
-  robust.min_places = 1;  // registration and the walk along the overlap have verified every pair
-  const RobustResult solved = SolveRobust(graph, robust);
+  const RobustResult solved = SolveRobust(graph, RobustConfigOf(config));
   for (std::size_t i = 0; i < used.size(); ++i) used[i]->weight = solved.loop_weight[i];
   GroupSolution out;
   for (const int drive : group) {
@@ -91,6 +97,20 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
         begin, begin + static_cast<std::ptrdiff_t>(drives[static_cast<std::size_t>(drive)].keyframes.size()));
   }
   return out;
+}
+
+std::size_t LoopsThatFit(const std::vector<Drive>& drives, const Overlap& overlap,
+                         const std::vector<std::vector<Pose3>>& merged_T_body, const GraphConfig& config) {
+  std::size_t fit = 0;
+  for (const Loop& loop : overlap.loops) {
+    const std::vector<Pose3> ends = {
+        merged_T_body[static_cast<std::size_t>(overlap.drive_a)][static_cast<std::size_t>(loop.keyframe_a)],
+        merged_T_body[static_cast<std::size_t>(overlap.drive_b)][static_cast<std::size_t>(loop.keyframe_b)]};
+    const Edge edge = LoopEdge(KeyframeOf(drives, overlap.drive_a, loop.keyframe_a),
+                               KeyframeOf(drives, overlap.drive_b, loop.keyframe_b), loop, 0, 1, config);
+    fit += pose_graph::Chi2(ends, edge) <= RobustConfigOf(config).inlier_chi2 ? 1U : 0U;
+  }
+  return fit;
 }
 
 }  // namespace mapweld::merge

@@ -8,6 +8,7 @@
 #include "tools/merge/chain_start.hpp"
 #include "tools/merge/frame_vote.hpp"
 #include "tools/pose_graph/graph_checks.hpp"
+#include "tools/pose_graph/graph_pattern.hpp"
 #include "tools/pose_graph/solve.hpp"
 
 namespace mapweld::merge {
@@ -177,21 +178,32 @@ class Attempt {
 }  // namespace
 
 RobustResult SolveRobust(const ChainGraph& graph, const RobustConfig& config) {
+  // Loops in an order of their own: the result must not depend on how they were listed.
+  const std::vector<std::size_t> order = pose_graph::OrderOfEdges(graph.loops);
+  ChainGraph sorted = graph;
+  for (std::size_t i = 0; i < order.size(); ++i) sorted.loops[i] = graph.loops[order[i]];
+
   const int nodes = static_cast<int>(graph.chain_T_node.size());
   std::vector<bool> usable;
   std::vector<double> weight;
-  for (const pose_graph::Edge& loop : graph.loops) {
+  for (const pose_graph::Edge& loop : sorted.loops) {
     usable.push_back(pose_graph::FaultOf(loop, nodes).empty());
     weight.push_back(usable.back() ? 1 : 0);
   }
-  std::vector<FrameVote> votes = VoteOnFrames(graph, weight);
+  std::vector<FrameVote> votes = VoteOnFrames(sorted, weight);
   std::erase_if(votes, [&](const FrameVote& vote) { return vote.places < config.min_places; });
   for (;;) {
-    Attempt attempt(graph, config, usable, votes);
+    Attempt attempt(sorted, config, usable, votes);
     attempt.Run();
     const std::size_t worst = attempt.WorstVote();
-    if (worst == votes.size()) return attempt.Result();
-    votes.erase(votes.begin() + static_cast<std::ptrdiff_t>(worst));
+    if (worst < votes.size()) {
+      votes.erase(votes.begin() + static_cast<std::ptrdiff_t>(worst));
+      continue;
+    }
+    RobustResult out = attempt.Result();
+    const std::vector<double> by_order = out.loop_weight;
+    for (std::size_t i = 0; i < order.size(); ++i) out.loop_weight[order[i]] = by_order[i];
+    return out;
   }
 }
 

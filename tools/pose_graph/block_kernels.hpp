@@ -11,7 +11,7 @@ namespace mapweld::pose_graph {
 template <int N>
 inline void SubtractProduct(const double* a, const double* b, double* c) {
   for (int col = 0; col < N; ++col) {
-    double sum[N];
+    double sum[static_cast<unsigned>(N)];
     for (int i = 0; i < N; ++i) sum[i] = c[col * N + i];
     for (int k = 0; k < N; ++k) {
       const double factor = b[k * N + col];

@@ -2,19 +2,16 @@
 #include "tools/pose_graph/graph_pattern.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
 namespace mapweld::pose_graph {
 namespace {
 
-// Negative, zero or positive, as x comes before y.
-int Compare(const double* x, const double* y, Eigen::Index count) {
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (x[i] < y[i]) return -1;
-    if (x[i] > y[i]) return 1;
-  }
-  return 0;
+// Negative, zero or positive, as x comes before y: by bytes, which orders "not a number" too.
+int Compare(const double* x, const double* y, std::size_t count) {
+  return std::memcmp(x, y, count * sizeof(double));
 }
 
 bool Before(const Edge& x, const Edge& y) {
@@ -23,10 +20,18 @@ bool Before(const Edge& x, const Edge& y) {
   int order = Compare(x.a_T_b.t.data(), y.a_T_b.t.data(), 3);
   if (order == 0) order = Compare(x.a_T_b.q.coeffs().data(), y.a_T_b.q.coeffs().data(), 4);
   if (order == 0) order = Compare(x.information.data(), y.information.data(), 36);
-  return order != 0 ? order < 0 : x.weight < y.weight;
+  if (order == 0) order = Compare(&x.weight, &y.weight, 1);
+  return order < 0;
 }
 
 }  // namespace
+
+std::vector<std::size_t> OrderOfEdges(const std::vector<Edge>& edges) {
+  std::vector<std::size_t> out(edges.size());
+  std::iota(out.begin(), out.end(), 0U);
+  std::sort(out.begin(), out.end(), [&](std::size_t x, std::size_t y) { return Before(edges[x], edges[y]); });
+  return out;
+}
 
 GraphPattern PatternOf(const PoseGraph& graph) {
   GraphPattern out;
@@ -49,11 +54,7 @@ GraphPattern PatternOf(const PoseGraph& graph) {
     out.column.push_back(number < 0 ? -1 : out.blocks.position[static_cast<std::size_t>(number)]);
   }
 
-  std::vector<std::size_t> order(graph.edges.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t x, std::size_t y) { return Before(graph.edges[x], graph.edges[y]); });
-  for (const std::size_t i : order) {
+  for (const std::size_t i : OrderOfEdges(graph.edges)) {
     const Edge& edge = graph.edges[i];
     GraphPattern::Term term{i, out.column[static_cast<std::size_t>(edge.a)],
                             out.column[static_cast<std::size_t>(edge.b)], 0};

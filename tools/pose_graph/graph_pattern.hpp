@@ -21,6 +21,9 @@ struct GraphPattern {
   std::vector<Term> terms;  // sorted by nodes and measurement: sums have the same bits however edges are listed
 };
 
+// Indices into `edges`, by nodes, then by the numbers of the measurement.
+std::vector<std::size_t> OrderOfEdges(const std::vector<Edge>& edges);
+
 // Held nodes, edge ends and the number of nodes must stay as they are; poses and weights may change.
 GraphPattern PatternOf(const PoseGraph& graph);
 
