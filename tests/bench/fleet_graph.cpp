@@ -103,7 +103,8 @@ class Fleet {
       // Where the second street seems to be.
       const Pose3 off(Vec3d(dice_.Between(-4, 4), dice_.Between(-4, 4), 0), geom::ExpSo3({0, 0, dice_.Between(-3, 3)}));
       const Pose3 moved = Truth(i) * off * Truth(k).Inverse();
-      for (int m = 0; m < group; ++m) AddLoop(i + 2 * m, k + 2 * m, Truth(i + 2 * m).Inverse() * moved * Truth(k + 2 * m), false);
+      for (int m = 0; m < group; ++m)
+        AddLoop(i + 2 * m, k + 2 * m, Truth(i + 2 * m).Inverse() * moved * Truth(k + 2 * m), false);
       left -= group;
     }
   }

@@ -97,16 +97,20 @@ void Run(int runs, bool big, bool with_ceres, const std::string& json, const std
     rows.push_back(Measure(subject, "Mapweld", runs, ours(pose_graph::Start::kBetter)));
     rows.push_back(Measure(subject, "Mapweld, given start", runs, ours(pose_graph::Start::kGiven)));
     if (!with_ceres || !kHaveCeres) continue;
-    rows.push_back(Measure(subject, "Ceres, given start", runs, [](pose_graph::PoseGraph* graph) {
-      return SolveWithCeres(graph, kMaxIterations);
-    }));
+    rows.push_back(Measure(subject, "Ceres, given start", runs,
+                           [](pose_graph::PoseGraph* graph) { return SolveWithCeres(graph, kMaxIterations); }));
   }
   if (!kHaveCeres) fmt::print("Ceres was not there when this was built (package libceres-dev)\n");
   if (json.empty()) return;
   nlohmann::json out = nlohmann::json::array();
   for (const Row& row : rows) {
-    out.push_back({{"graph", row.graph}, {"solver", row.solver}, {"poses", row.poses}, {"edges", row.edges},
-                   {"iterations", row.iterations}, {"cpu_s", row.cpu_s}, {"cost", row.cost}});
+    out.push_back({{"graph", row.graph},
+                   {"solver", row.solver},
+                   {"poses", row.poses},
+                   {"edges", row.edges},
+                   {"iterations", row.iterations},
+                   {"cpu_s", row.cpu_s},
+                   {"cost", row.cost}});
   }
   io::AtomicFile file(json);
   file.Write(out.dump(1) + "\n");
@@ -124,7 +128,9 @@ int main(int argc, char** argv) {
   std::string json;
   std::vector<std::string> files;
   app.add_option("graphs", files, "more g2o files");
-  app.add_option("--runs", runs, "of every solver; the median counts")->check(CLI::Range(1, 101))->capture_default_str();
+  app.add_option("--runs", runs, "of every solver; the median counts")
+      ->check(CLI::Range(1, 101))
+      ->capture_default_str();
   app.add_flag("--big", big, "also a city of 240 000 poses");
   app.add_flag("--no-ceres", no_ceres, "only ours");
   app.add_option("--json", json, "file for the table");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong loops in the pose graph of three vehicles: the robust solver beside plain least squares, Huber and DCS alone.
 //   robust_bench [--seeds N] [--json FILE]; tests/bench/plot_robust.py FILE OUT.png draws it.
-// Worst and mean over the seeds: error after one alignment of all vehicles, against that of the same graph without wrong
-// loops; share of the accepted loops (weight above 0.5) that are true, share of the true loops accepted.
+// Worst and mean over the seeds: error after one alignment of all vehicles, against that of the same graph without
+// wrong loops; share of the accepted loops (weight above 0.5) that are true, share of the true loops accepted.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -164,9 +164,16 @@ void Run(int seeds, const std::string& json) {
   if (json.empty()) return;
   nlohmann::json out = nlohmann::json::array();
   for (const Row& row : rows) {
-    out.push_back({{"scenario", row.scenario}, {"method", row.method}, {"wrong_share", row.wrong_share},
-                   {"mean_error_m", row.mean_error_m}, {"mean_ratio", row.mean_ratio}, {"worst_ratio", row.worst_ratio},
-                   {"good", row.good}, {"seeds", seeds}, {"precision", row.precision}, {"recall", row.recall}});
+    out.push_back({{"scenario", row.scenario},
+                   {"method", row.method},
+                   {"wrong_share", row.wrong_share},
+                   {"mean_error_m", row.mean_error_m},
+                   {"mean_ratio", row.mean_ratio},
+                   {"worst_ratio", row.worst_ratio},
+                   {"good", row.good},
+                   {"seeds", seeds},
+                   {"precision", row.precision},
+                   {"recall", row.recall}});
   }
   io::WriteFileAtomically(json, out.dump(1) + "\n");
 }

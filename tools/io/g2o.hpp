@@ -34,10 +34,10 @@ struct PoseGraphFile {
 
 void WriteG2o(const std::filesystem::path& path, const PoseGraphFile& graph);
 
-// Throws one sentence with file and line for what is not a pose graph: another record, a number that is none, too few or
-// too many of them, a vertex twice, a vertex whose pose is not finite or whose quaternion is zero. Edges are taken as
-// they are written, also where they make no sense ("nan", a vertex that is not listed); quaternions that are about of
-// unit length are made so. PARAMS_SE3OFFSET is passed over.
+// Throws one sentence with file and line for what is not a pose graph: another record, a number that is none, too few
+// or too many of them, a vertex twice, a vertex whose pose is not finite or whose quaternion is zero. Edges are taken
+// as they are written, also where they make no sense ("nan", a vertex that is not listed); quaternions that are about
+// of unit length are made so. PARAMS_SE3OFFSET is passed over.
 PoseGraphFile ReadG2o(const std::filesystem::path& path);
 // The same for the text of a file; `name` is what errors call it.
 PoseGraphFile ParseG2o(std::string_view text, std::string_view name);

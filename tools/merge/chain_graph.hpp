@@ -9,9 +9,9 @@
 namespace mapweld::merge {
 
 struct ChainGraph {
-  std::vector<geom::Pose3> chain_T_node;     // nodes of one chain follow one another
-  std::vector<int> chain_of;                 // per node, 0, 1, ...
-  std::vector<pose_graph::Edge> odometry;    // each from a node to the next one of its chain
+  std::vector<geom::Pose3> chain_T_node;   // nodes of one chain follow one another
+  std::vector<int> chain_of;               // per node, 0, 1, ...
+  std::vector<pose_graph::Edge> odometry;  // each from a node to the next one of its chain
   std::vector<pose_graph::Edge> loops;
   int anchor = 0;  // node; its chain's frame becomes the world
 

@@ -12,8 +12,9 @@ struct ChainStart {
   std::vector<int> root_of;  // per chain: the chain whose frame it was placed in
 };
 
-// A start for all nodes along a spanning tree of the votes, those with most members first. The anchor's chain stays, and
-// what the votes connect to it is placed by them; every other connected part stands in the frame of its lowest chain.
+// A start for all nodes along a spanning tree of the votes, those with most members first. The anchor's chain stays,
+// and what the votes connect to it is placed by them; every other connected part stands in the frame of its lowest
+// chain.
 ChainStart StartAlongTree(const ChainGraph& graph, std::vector<FrameVote> votes);
 
 }  // namespace mapweld::merge

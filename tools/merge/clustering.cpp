@@ -75,7 +75,8 @@ std::vector<int> KMeans(const Eigen::MatrixXd& rows, int k) {
 // How many groups ascending eigenvalues, of which the first is 0, speak of.
 int NumberOfGroups(const Eigen::VectorXd& eigenvalues, const WeightConfig& config) {
   int groups = 1;
-  for (int k = 2; k < static_cast<int>(eigenvalues.size()) && eigenvalues(k - 1) <= std::max(config.theta, kZero); ++k) {
+  for (int k = 2; k < static_cast<int>(eigenvalues.size()) && eigenvalues(k - 1) <= std::max(config.theta, kZero);
+       ++k) {
     if (eigenvalues(k) >= config.eigengap * std::max(eigenvalues(k - 1), kZero)) groups = k;
   }
   return groups;

@@ -14,8 +14,8 @@ namespace {
 using geom::Pose3;
 
 constexpr double kPlace_m = 10;
-constexpr double kGate = 16.3;  // chi-square of 3 degrees of freedom, 99.9 %
-constexpr double kSlack_m = 0.5;     // added to the gate: odometry is not quite what its sigmas say
+constexpr double kGate = 16.3;    // chi-square of 3 degrees of freedom, 99.9 %
+constexpr double kSlack_m = 0.5;  // added to the gate: odometry is not quite what its sigmas say
 constexpr double kSlack_rad = 0.02;
 
 // What odometry has gathered since the chain began.
@@ -51,8 +51,8 @@ struct SeenLoop {
   std::size_t index = 0;
   int node_a = 0;
   int node_b = 0;
-  Pose3 a_T_b;         // nodes
-  Pose3 chain_a_T_b;   // chain frames
+  Pose3 a_T_b;        // nodes
+  Pose3 chain_a_T_b;  // chain frames
   double variance_m2 = 0;
   double variance_rad2 = 0;
 };

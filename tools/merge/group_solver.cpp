@@ -34,7 +34,7 @@ Edge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const Grap
 }
 
 Edge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
-                   const GraphConfig& config) {
+              const GraphConfig& config) {
   // From level frames to body frames.
   const Pose3 body_T_level_a = a.odom_T_body.Inverse() * geom::Level(a.odom_T_body);
   const Pose3 body_T_level_b = b.odom_T_body.Inverse() * geom::Level(b.odom_T_body);

@@ -96,8 +96,7 @@ void GroupAndSolve(const std::vector<Drive>& drives, const MergeConfig& config, 
     }
     FormGroups(drives.size(), config.weight, result);
     result->merged_T_body.assign(drives.size(), {});
-    run_all(result->groups.size(),
-            [&](std::size_t g) { SolveOne(drives, result->groups[g], config.graph, result); });
+    run_all(result->groups.size(), [&](std::size_t g) { SolveOne(drives, result->groups[g], config.graph, result); });
   } while (WithdrawDisbelieved(config.graph, result));
 }
 

@@ -9,9 +9,9 @@
 
 namespace mapweld::pose_graph {
 
-// What is wrong with the edge in a graph of `nodes` nodes, as the end of a sentence ("ties a node to itself"); empty when
-// nothing is: ends that exist and differ, a finite measurement with a quaternion of unit length, an information that is
-// finite, symmetric, without negative eigenvalues, not zero and nowhere above 1e20, a weight in 0..1.
+// What is wrong with the edge in a graph of `nodes` nodes, as the end of a sentence ("ties a node to itself"); empty
+// when nothing is: ends that exist and differ, a finite measurement with a quaternion of unit length, an information
+// that is finite, symmetric, without negative eigenvalues, not zero and nowhere above 1e20, a weight in 0..1.
 std::string FaultOf(const Edge& edge, int nodes);
 
 struct RefusedEdge {

@@ -34,9 +34,7 @@ int IndexOf(const std::vector<std::int64_t>& id, std::int64_t wanted) {
 void HoldEveryComponent(PoseGraph* graph) {
   const std::vector<int> component = Components(*graph);
   std::vector<bool> held(component.size(), false);
-  const auto root = [&](int node) {
-    return static_cast<std::size_t>(component[static_cast<std::size_t>(node)]);
-  };
+  const auto root = [&](int node) { return static_cast<std::size_t>(component[static_cast<std::size_t>(node)]); };
   for (const int node : graph->held) held[root(node)] = true;
   for (int node = 0; node < static_cast<int>(component.size()); ++node) {
     if (held[root(node)]) continue;
@@ -70,7 +68,8 @@ LoadedGraph FromFile(const io::PoseGraphFile& file) {
 
 io::PoseGraphFile ToFile(const LoadedGraph& loaded, const io::PoseGraphFile& file) {
   io::PoseGraphFile out;
-  for (std::size_t i = 0; i < loaded.id.size(); ++i) out.vertices.push_back({loaded.id[i], loaded.graph.world_T_node[i]});
+  for (std::size_t i = 0; i < loaded.id.size(); ++i)
+    out.vertices.push_back({loaded.id[i], loaded.graph.world_T_node[i]});
   for (const io::PoseGraphVertex& vertex : file.vertices) {
     if (vertex.fixed) out.vertices[static_cast<std::size_t>(IndexOf(loaded.id, vertex.id))].fixed = true;
   }

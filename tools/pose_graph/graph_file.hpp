@@ -29,7 +29,7 @@ void HoldEveryComponent(PoseGraph* graph);
 
 struct ComponentsReport {
   int components = 0;
-  int chordal = 0;         // started there
+  int chordal = 0;  // started there
   int not_converged = 0;
   int iterations = 0;      // of the component with the most
   double cost_before = 0;  // sums

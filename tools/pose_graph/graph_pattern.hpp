@@ -11,8 +11,8 @@ namespace mapweld::pose_graph {
 
 struct GraphPattern {
   struct Term {
-    std::size_t edge;   // index in the graph
-    int column_a;       // column of the factor, -1 for a held node
+    std::size_t edge;  // index in the graph
+    int column_a;      // column of the factor, -1 for a held node
     int column_b;
     std::size_t block;  // of the pair, where both are unknown
   };

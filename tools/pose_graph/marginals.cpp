@@ -29,8 +29,7 @@ Mat6d Marginals::OfNode(int node) const {
 Mat6d Marginals::OfEdge(int a, int b) const {
   const geom::Pose3& world_T_a = graph_->world_T_node[static_cast<std::size_t>(a)];
   const geom::Pose3& world_T_b = graph_->world_T_node[static_cast<std::size_t>(b)];
-  const geom::BetweenLinearization l =
-      geom::LinearizeBetween(world_T_a, world_T_b, world_T_a.Inverse() * world_T_b);
+  const geom::BetweenLinearization l = geom::LinearizeBetween(world_T_a, world_T_b, world_T_a.Inverse() * world_T_b);
   Mat6d out = l.jacobian_a * OfNode(a) * l.jacobian_a.transpose() + l.jacobian_b * OfNode(b) * l.jacobian_b.transpose();
   const int column_a = pattern_.column[static_cast<std::size_t>(a)];
   const int column_b = pattern_.column[static_cast<std::size_t>(b)];

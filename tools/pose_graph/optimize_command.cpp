@@ -29,7 +29,9 @@ struct OptimizeArguments {
 void WriteCovariances(const std::filesystem::path& path, const LoadedGraph& loaded) {
   const Marginals marginals(&loaded.graph);
   io::AtomicFile file(path);
-  file.Write("# id, then the upper triangle of the 6 x 6 covariance (x y z in m, rotation vector in rad, frame of the pose)\n");
+  file.Write(
+      "# id, then the upper triangle of the 6 x 6 covariance (x y z in m, rotation vector in rad, frame of the "
+      "pose)\n");
   for (std::size_t i = 0; i < loaded.id.size(); ++i) {
     const geom::Mat6d covariance = marginals.OfNode(static_cast<int>(i));
     std::string row = fmt::format("{}", loaded.id[i]);
@@ -46,8 +48,8 @@ void RunOptimize(const OptimizeArguments& arguments) {
   const io::PoseGraphFile file = io::ReadG2o(arguments.in);
   LoadedGraph loaded = FromFile(file);
   if (loaded.graph.world_T_node.empty()) {
-    throw std::runtime_error(fmt::format("{} holds no pose graph: no VERTEX_SE3:QUAT and no EDGE_SE3:QUAT",
-                                         arguments.in.string()));
+    throw std::runtime_error(
+        fmt::format("{} holds no pose graph: no VERTEX_SE3:QUAT and no EDGE_SE3:QUAT", arguments.in.string()));
   }
   for (std::size_t i = 0; i < std::min(kNamed, loaded.refused.size()); ++i) {
     fmt::print(stderr, "optimize: {}: {}; left out\n", arguments.in.string(), loaded.refused[i]);

@@ -66,7 +66,8 @@ TEST(Clustering, CutsThreeGroupsThatHardlyHoldTogether) {
   }
   ties.emplace_back(2, 3, 0.004);
   ties.emplace_back(5, 6, 0.004);
-  EXPECT_THAT(ClusterDrives(Weights(9, ties), {}), ElementsAre(ElementsAre(0, 1, 2), ElementsAre(3, 4, 5), ElementsAre(6, 7, 8)));
+  EXPECT_THAT(ClusterDrives(Weights(9, ties), {}),
+              ElementsAre(ElementsAre(0, 1, 2), ElementsAre(3, 4, 5), ElementsAre(6, 7, 8)));
 }
 
 TEST(Clustering, WithThetaZeroGivesConnectedComponents) {

@@ -72,7 +72,9 @@ class Fleet {
  private:
   static constexpr int kKeyframes = 20;
   static Pose3 World(int k) { return {{5.0 * k, 0.02 * k * k, 0}, geom::ExpSo3({0, 0, 0.008 * k})}; }
-  static Pose3 Frame(int drive) { return {{40.0 * drive, -70.0 * drive, 1.0 * drive}, geom::ExpSo3({0, 0, 0.7 * drive})}; }
+  static Pose3 Frame(int drive) {
+    return {{40.0 * drive, -70.0 * drive, 1.0 * drive}, geom::ExpSo3({0, 0, 0.7 * drive})};
+  }
 
   std::vector<Drive> drives_;
   MergeConfig config_;

@@ -159,12 +159,12 @@ TEST(RobustSolve, TakesAPairAwayThatContradictsTheWayRound) {
   config.true_loops = 120;
   FleetGraph fleet = MakeFleet(config);
   ChainGraph& graph = fleet.graph;
-  std::erase_if(graph.loops, [&](const pose_graph::Edge& loop) {
-    return graph.ChainOf(loop.a) == 0 && graph.ChainOf(loop.b) == 2;
-  });
+  std::erase_if(graph.loops,
+                [&](const pose_graph::Edge& loop) { return graph.ChainOf(loop.a) == 0 && graph.ChainOf(loop.b) == 2; });
   const std::size_t good = graph.loops.size();
   ASSERT_GT(good, 20U);
-  const geom::Pose3 moved = fleet.truth[10] * geom::Pose3{{0, 3, 0}, geom::Quatd::Identity()} * fleet.truth[500].Inverse();
+  const geom::Pose3 moved =
+      fleet.truth[10] * geom::Pose3{{0, 3, 0}, geom::Quatd::Identity()} * fleet.truth[500].Inverse();
   for (int m = 0; m < 8; ++m) {
     pose_graph::Edge wrong = graph.loops.front();
     wrong.a = 10 + 3 * m;

@@ -15,9 +15,9 @@
 namespace mapweld::pose_graph {
 namespace {
 
-using ::testing::HasSubstr;
 using test::Block;
 using test::NoisyBlock;
+using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -123,7 +123,8 @@ TEST(GraphChecks, PartsThatHangTogetherWithNothingKeepFramesOfTheirOwn) {
   EXPECT_EQ(report.components, 2);
   EXPECT_EQ(report.not_converged, 0);
   for (int i = 0; i < 80; ++i) {
-    EXPECT_EQ(graph.world_T_node[static_cast<std::size_t>(i)].t, graph.world_T_node[static_cast<std::size_t>(i + 80)].t);
+    EXPECT_EQ(graph.world_T_node[static_cast<std::size_t>(i)].t,
+              graph.world_T_node[static_cast<std::size_t>(i + 80)].t);
   }
 }
 

@@ -98,8 +98,8 @@ TEST(Solve, KnowsCovariancesAsTheDenseInverseDoes) {
   }
   // A loop knows its relative pose better than the chain between its ends does.
   EXPECT_LT(marginals.OfEdge(3, 76).trace(), marginals.OfNode(40).trace());
-  const geom::BetweenLinearization l = geom::LinearizeBetween(
-      graph.world_T_node[3], graph.world_T_node[76], graph.world_T_node[3].Inverse() * graph.world_T_node[76]);
+  const geom::BetweenLinearization l = geom::LinearizeBetween(graph.world_T_node[3], graph.world_T_node[76],
+                                                              graph.world_T_node[3].Inverse() * graph.world_T_node[76]);
   Eigen::Matrix<double, 6, 12> jacobian;
   jacobian << l.jacobian_a, l.jacobian_b;
   Eigen::Matrix<double, 12, 12> joint;
