@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "tools/merge/chain_start.hpp"
@@ -38,9 +39,13 @@ class Attempt {
       estimate_.edges.push_back(loop);
     }
     weight_.assign(counted_.size(), 1.0);
+    solver_.emplace(&estimate_);
   }
+  Attempt(const Attempt&) = delete;
+  Attempt& operator=(const Attempt&) = delete;
 
   void Run() {
+    if (counted_.empty()) return;
     ChooseLoops();
     for (double& w : weight_) w = w > 0.5 ? 1.0 : 0.0;
     StartAgain();
@@ -105,7 +110,7 @@ class Attempt {
     }
     pose_graph::SolveConfig config;
     config.max_iterations = iterations;
-    (void)pose_graph::Solve(&estimate_, config);
+    (void)solver_->Run(config);
   }
 
   // Truncated least squares by graduated non-convexity: weights go to 0 or 1 as mu grows.
@@ -172,6 +177,7 @@ class Attempt {
   std::vector<int> root_of_;
   std::vector<std::size_t> counted_;  // loops within one connected part, in the order of the estimate's last edges
   PoseGraph estimate_;
+  std::optional<pose_graph::Solver> solver_;  // of the estimate
   std::vector<double> weight_;  // per counted loop
 };
 

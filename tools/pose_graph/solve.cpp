@@ -8,7 +8,6 @@
 
 #include "tools/pose_graph/chordal_start.hpp"
 #include "tools/pose_graph/graph_checks.hpp"
-#include "tools/pose_graph/normal_equations.hpp"
 
 namespace mapweld::pose_graph {
 namespace {
@@ -33,31 +32,32 @@ bool TakeBetterStart(const GraphPattern& pattern, PoseGraph* graph) {
 
 }  // namespace
 
-SolveReport Solve(PoseGraph* graph, const SolveConfig& config) {
-  CheckGraph(*graph);
-  const GraphPattern pattern = PatternOf(*graph);
-  NormalEquations equations(graph, &pattern);
+Solver::Solver(PoseGraph* graph)
+    : graph_((CheckGraph(*graph), graph)), pattern_(PatternOf(*graph)), equations_(graph, &pattern_) {}
+
+SolveReport Solver::Run(const SolveConfig& config) {
   SolveReport report;
-  report.cost_before = Cost(*graph);
-  if (config.start == Start::kBetter) report.chordal = TakeBetterStart(pattern, graph);
-  report.cost_after = equations.Linearize(graph->world_T_node);
-  report.converged = pattern.blocks.columns() == 0;
-  std::vector<Pose3> tried(graph->world_T_node.size());
+  report.cost_before = Cost(*graph_);
+  if (config.start == Start::kBetter) report.chordal = TakeBetterStart(pattern_, graph_);
+  report.cost_after = equations_.Linearize(graph_->world_T_node);
+  report.converged = pattern_.blocks.columns() == 0;
+  std::vector<Pose3> tried(graph_->world_T_node.size());
   double damping = 0;
   while (!report.converged && report.iterations < config.max_iterations && damping <= kGreatestDamping) {
     ++report.iterations;
     bool better = false;
-    if (equations.Solve(damping)) {
+    if (equations_.Solve(damping)) {
       for (std::size_t i = 0; i < tried.size(); ++i) {
-        tried[i] = geom::Retract(graph->world_T_node[i], equations.Step(static_cast<int>(i)));
+        const Pose3& now = graph_->world_T_node[i];
+        tried[i] = pattern_.column[i] < 0 ? now : geom::Retract(now, equations_.Step(static_cast<int>(i)));
       }
-      const double cost = equations.Linearize(tried);
+      const double cost = equations_.Linearize(tried);
       const double decrease = report.cost_after - cost;
       better = std::isfinite(cost) && decrease >= 0;
-      report.converged = equations.LargestStep() < kSmallStep ||
+      report.converged = equations_.LargestStep() < kSmallStep ||
                          (better && damping <= kFirstDamping && decrease <= config.small_decrease * cost);
       if (better) {
-        std::swap(graph->world_T_node, tried);
+        std::swap(graph_->world_T_node, tried);
         report.cost_after = cost;
       }
     }
@@ -65,10 +65,14 @@ SolveReport Solve(PoseGraph* graph, const SolveConfig& config) {
       damping = damping > kLeastDamping ? 0.1 * damping : 0;
     } else {
       damping = std::max(10 * damping, kFirstDamping);
-      if (!report.converged) (void)equations.Linearize(graph->world_T_node);
+      if (!report.converged) (void)equations_.Linearize(graph_->world_T_node);
     }
   }
   return report;
+}
+
+SolveReport Solve(PoseGraph* graph, const SolveConfig& config) {
+  return Solver(graph).Run(config);
 }
 
 }  // namespace mapweld::pose_graph

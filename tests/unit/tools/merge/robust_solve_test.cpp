@@ -82,7 +82,7 @@ int TimesTied(int trials, int wrong_loops, int group) {
   for (int trial = 0; trial < trials; ++trial) {
     FleetConfig config;
     config.vehicles = 2;
-    config.poses = 60;
+    config.poses = 40;
     config.blocks = 4;
     config.shared_streets = false;
     config.true_loops = wrong_loops;
