@@ -178,7 +178,7 @@ class Attempt {
   std::vector<std::size_t> counted_;  // loops within one connected part, in the order of the estimate's last edges
   PoseGraph estimate_;
   std::optional<pose_graph::Solver> solver_;  // of the estimate
-  std::vector<double> weight_;  // per counted loop
+  std::vector<double> weight_;                // per counted loop
 };
 
 }  // namespace

@@ -156,7 +156,8 @@ TEST(RobustSolve, RefusesOdometryThatIsNotFinite) {
 // Loops between the first and the third vehicle, from one end to the other of a street that looks like another one.
 TEST(RobustSolve, TakesAPairAwayThatContradictsTheWayRound) {
   FleetConfig config = SmallFleet(8);
-  config.true_loops = 120;
+  config.blocks = 2;
+  config.true_loops = 200;
   FleetGraph fleet = MakeFleet(config);
   ChainGraph& graph = fleet.graph;
   std::erase_if(graph.loops,
