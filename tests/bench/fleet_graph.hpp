@@ -12,7 +12,7 @@ namespace mapweld::bench {
 struct FleetConfig {
   int vehicles = 3;
   int poses = 400;  // per vehicle, 5 m apart
-  int blocks = 6;   // the town is a square of so many blocks of 100 m
+  int blocks = 4;   // the town is a square of so many blocks of 100 m
   int true_loops = 120;
   double wrong_share = 0;  // of all loops
   int wrong_group = 1;     // wrong loops that agree with each other, as along a look-alike street; 1: each on its own

@@ -22,7 +22,7 @@ using bench::MakeFleet;
 FleetConfig SmallFleet(unsigned seed) {
   FleetConfig config;
   config.poses = 200;
-  config.blocks = 4;
+  config.blocks = 3;
   config.true_loops = 60;
   config.seed = seed;
   return config;

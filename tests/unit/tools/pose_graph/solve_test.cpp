@@ -184,8 +184,8 @@ TEST_P(StandardGraphs, ReachTheBestKnownCost) {
 INSTANTIATE_TEST_SUITE_P(All, StandardGraphs,
                          ::testing::Values(Standard{"sphere2500", 675.74}, Standard{"torus3D", 12119.5},
                                            Standard{"parking-garage", 0.6342}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& test) {
+                           std::string name = test.param.name;
                            std::erase(name, '-');
                            return name;
                          });
