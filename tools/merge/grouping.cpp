@@ -15,8 +15,9 @@ bool InOneGroup(const MergeResult& result, const Overlap& overlap) {
          result.group_of[static_cast<std::size_t>(overlap.drive_b)];
 }
 
+// By the merge itself, after registration; a refusal by hand has no loops.
 bool WithdrawnLater(const Overlap& overlap) {
-  return !overlap.accepted && (overlap.test == "cycle" || overlap.test == "pose graph");
+  return !overlap.accepted && !overlap.loops.empty() && (overlap.test == "cycle" || overlap.test == "pose graph");
 }
 
 void Withdraw(const char* test, Overlap* overlap) {
