@@ -14,7 +14,7 @@ const Polyline kStreet{{0, 0}, {120, 0}, {120, 80}, {200, 90}, {230, 84}, {260, 
 class Motion : public testing::Test {
  protected:
   const LanePath lane_ = LanePath::Beside(kStreet);
-  const VehicleMotion motion_{lane_, DrivingStyle{}, 42};
+  const VehicleMotion motion_{lane_, DrivingStyle{}, Relief(0, 1), 42};
 };
 
 TEST_F(Motion, KeepsTheLimitsOfItsDrivingStyle) {
