@@ -45,20 +45,20 @@ Polyline ReadPath(const std::filesystem::path& file) {
 }  // namespace
 
 PathTown BuildPathTown(const PathPlan& plan, std::uint64_t seed) {
-  constexpr double kStep_m = 4;
+  constexpr double kNode_m = 4;
   constexpr double kRow_m = 90;
   PathTown result;
   std::int64_t next_id = 10'000'000;
   std::int64_t next_node = 1;
   for (std::size_t n = 0; n < plan.names.size(); ++n) {
-    Polyline path = Resample(ReadPath(plan.folder / (plan.names[n] + ".txt")), kStep_m);
+    Polyline path = Resample(ReadPath(plan.folder / (plan.names[n] + ".txt")), kNode_m);
     const Vec2d shift = Vec2d(static_cast<double>(n % 4), static_cast<double>(n / 4)) * kApart_m - path.front();
     for (Vec2d& p : path) p += shift;
     Road road{static_cast<std::int64_t>(n) + 1, {}, path, kHalfWidth_m, true, true};
     for (std::size_t i = 0; i < path.size(); ++i) road.nodes.push_back(next_node++);
     for (const Vec2d& p : path) result.town.bounds.Extend(p);
     const TownStyle& style = StyleByName(Uniform(Hash(seed, 1, n)) < 0.5 ? "suburb" : "old_town");
-    const auto row = static_cast<std::size_t>(kRow_m / kStep_m);
+    const auto row = static_cast<std::size_t>(kRow_m / kNode_m);
     for (std::size_t i = 0; i + row < path.size(); i += row) {
       Polyline line(path.begin() + static_cast<std::ptrdiff_t>(i),
                     path.begin() + static_cast<std::ptrdiff_t>(i + row + 1));

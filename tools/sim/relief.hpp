@@ -14,7 +14,7 @@ namespace mapweld::sim {
 class Relief {
  public:
   // A few long waves in random directions, 300 to 900 m from crest to crest; `amplitude_m` is their standard deviation.
-  // The ground never rises more steeply than amplitude_m * 0.05.
+  // The ground never rises more steeply than amplitude_m * 0.067.
   Relief(double amplitude_m, std::uint64_t seed);
 
   [[nodiscard]] double Height(const Vec2d& p) const;

@@ -134,7 +134,7 @@ TEST_F(Lidar, ShowsMovingThingsWhereTheyAreAtEachFiring) {
     for (std::size_t i = 0; i < busy.size(); ++i) {
       if (busy[i].distance_m <= 0 || empty[i].distance_m <= 0) continue;
       EXPECT_LT(busy[i].distance_m, empty[i].distance_m + 0.01F) << "traffic hides, it never uncovers";
-      others += busy[i].distance_m < empty[i].distance_m - 0.5F ? 1 : 0;
+      others += busy[i].distance_m < empty[i].distance_m - 0.5F ? 1U : 0U;
     }
   }
   EXPECT_GT(others, 200U);

@@ -30,7 +30,8 @@ TEST_F(ParkedCars, StandElsewhereInEveryDriveAndTheSameWhenItIsRepeated) {
 }
 
 TEST_F(ParkedCars, LeaveTheCarriagewaysFree) {
-  for (const Eigen::Vector3f& vertex : Of(Park(3), Surface::kCar).vertices) {
+  const TownMesh parked = Park(3);
+  for (const Eigen::Vector3f& vertex : Of(parked, Surface::kCar).vertices) {
     const Vec2d p = vertex.head<2>().cast<double>();
     for (const Road& road : town_.roads) {
       for (std::size_t i = 1; i < road.line.size(); ++i) {

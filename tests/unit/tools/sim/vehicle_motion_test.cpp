@@ -41,8 +41,8 @@ TEST_F(Motion, NeverTurnsTighterThanACar) {
 
 TEST_F(Motion, DrivesInTheRightHandLane) {
   const Vec2d on_first_street = lane_.Position(60);
-  EXPECT_NEAR(on_first_street.y(), -LanePath::kLaneOffset_m, 0.5);
-  EXPECT_NEAR(lane_.Position(0).y(), -LanePath::kLaneOffset_m, 0.05);
+  EXPECT_NEAR(on_first_street.y(), -LaneHabit{}.offset_m, 0.5);
+  EXPECT_NEAR(lane_.Position(0).y(), -LaneHabit{}.offset_m, 0.05);
 }
 
 TEST_F(Motion, StandsStillAtBothEnds) {
