@@ -45,7 +45,9 @@ TEST(PathTown, BuildsStreetsWherePathsRunAndHousesBesideThem) {
 
 TEST(PathTown, SaysWhatIsMissingAndWhatIsWrong) {
   const TestFolder folder;
-  EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }),
+  EXPECT_THAT(MessageOf([&] {
+                (void)BuildPathTown({folder / "", {"00"}}, 1);
+              }),
               testing::HasSubstr("put its poses/*.txt into that folder"));
   WriteText(folder / "00.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
   EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }), testing::HasSubstr("row 1"));
