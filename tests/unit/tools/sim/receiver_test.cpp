@@ -65,7 +65,7 @@ TEST(Receiver, SeesLessInRainAndFogAndNowAndThenADrop) {
   const Weather rain{20, 0};
   const Weather fog{0, 100};
   EXPECT_LT(DetectedShare(Surface::kWall, 60, 0.9, rain), DetectedShare(Surface::kWall, 60, 0.9));
-  EXPECT_LT(DetectedShare(Surface::kWall, 40, 0.9, fog), 0.5 * DetectedShare(Surface::kWall, 40, 0.9));
+  EXPECT_LT(DetectedShare(Surface::kWall, 60, 0.9, fog), 0.5 * DetectedShare(Surface::kWall, 60, 0.9));
   const Receiver in_rain(kVlp16, rain);
   const Receiver in_the_dry(kVlp16, {});
   int drops = 0;
