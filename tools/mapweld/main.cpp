@@ -6,12 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "tools/doctor/doctor_command.hpp"
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
 #include "tools/odometry/odometry_command.hpp"
+#include "tools/pose_graph/optimize_command.hpp"
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
+#include "tools/spy/spy_command.hpp"
+#include "tools/store/store_commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Merges the LiDAR maps of many vehicles into one, without GPS and without an initial guess.", "mapweld");
@@ -19,10 +23,14 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
+  mapweld::store::AddStoreCommands(app);
   mapweld::eval::AddEvalCommand(app);
   mapweld::sim::AddSimCommand(app);
   mapweld::replay::AddReplayCommand(app);
   mapweld::odometry::AddOdometryCommand(app);
+  mapweld::pose_graph::AddOptimizeCommand(app);
+  mapweld::spy::AddSpyCommand(app);
+  mapweld::doctor::AddDoctorCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

@@ -54,7 +54,8 @@ struct VerifyConfig {
 
 struct WeightConfig {
   double half_weight_overlap_m = 10;  // the shared length with omega = 1/2; C_omega of eq. 9 follows
-  double theta = 0.02;                // greatest eigenvalue of the normalised Laplacian that still counts as a cluster
+  double theta = 0.02;                // greatest eigenvalue of the normalised Laplacian that may count as a cluster
+  double eigengap = 8;                // how many times as large the next one must be; a line of drives has at most 4
 };
 
 struct GraphConfig {
@@ -67,6 +68,7 @@ struct GraphConfig {
   double loop_sigma_tilt_rad = 0.01;
   int max_iterations = 40;
   double min_mean_weight = 0.4;  // of the loops of an overlap; below, the pose graph speaks against it
+  int quarantine_after = 3;      // withdrawn overlaps of one drive
 };
 
 struct RefineConfig {

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 
-#include "tools/merge/clustering.hpp"
 #include "tools/merge/cycle_check.hpp"
-#include "tools/merge/group_solver.hpp"
+#include "tools/merge/grouping.hpp"
 #include "tools/merge/parallel.hpp"
 
 namespace mapweld::merge {
@@ -47,6 +47,9 @@ class Merge {
       Time("refine", [&] { Refine(round); });
       Time("groups", [&] { GroupAndSolve(); });
     }
+    Time("recall", [&] {
+      if (RecallOverlaps(drives_, config_, &out_)) GroupAndSolve();
+    });
     Finish();
     return std::move(out_);
   }
@@ -74,53 +77,11 @@ class Merge {
     }
   }
 
-  // Groups by omega, one pose graph per group; overlaps that the pose graph does not believe are withdrawn, after which
-  // the groups may be others.
   void GroupAndSolve() {
-    const auto n = static_cast<Eigen::Index>(drives_.size());
-    for (bool settled = false; !settled;) {
-      Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, n);
-      for (const Overlap& overlap : out_.overlaps) {
-        if (overlap.accepted)
-          weights(overlap.drive_a, overlap.drive_b) = weights(overlap.drive_b, overlap.drive_a) = overlap.weight;
-      }
-      out_.groups = ClusterDrives(weights, config_.weight.theta);
-      out_.group_of.assign(drives_.size(), 0);
-      out_.merged_T_body.assign(drives_.size(), {});
-      for (std::size_t g = 0; g < out_.groups.size(); ++g) {
-        for (const int drive : out_.groups[g]) out_.group_of[static_cast<std::size_t>(drive)] = static_cast<int>(g);
-      }
-      InParallel("groups", out_.groups.size(), [&](std::size_t g) { SolveOne(out_.groups[g]); });
-      settled = !WithdrawDisbelieved();
-    }
-  }
-
-  void SolveOne(const std::vector<int>& group) {
-    if (group.size() == 1) {
-      const auto drive = static_cast<std::size_t>(group.front());
-      for (const Keyframe& keyframe : drives_[drive].keyframes)
-        out_.merged_T_body[drive].push_back(keyframe.odom_T_body);
-      return;
-    }
-    GroupSolution solution = SolveGroup(drives_, group, config_.graph, &out_.overlaps);
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      out_.merged_T_body[static_cast<std::size_t>(group[i])] = std::move(solution.merged_T_body[i]);
-    }
-  }
-
-  bool WithdrawDisbelieved() {
-    bool any = false;
-    for (Overlap& overlap : out_.overlaps) {
-      if (!overlap.accepted || !InOneGroup(overlap.drive_a, overlap.drive_b)) continue;
-      double sum = 0;
-      for (const Loop& loop : overlap.loops) sum += loop.weight;
-      if (sum >= config_.graph.min_mean_weight * static_cast<double>(overlap.loops.size())) continue;
-      overlap.accepted = false;
-      overlap.test = "pose graph";
-      overlap.weight = 0;
-      any = true;
-    }
-    return any;
+    merge::GroupAndSolve(
+        drives_, config_,
+        [this](std::size_t count, const std::function<void(std::size_t)>& job) { InParallel("groups", count, job); },
+        &out_);
   }
 
   // Loops that the estimate makes visible, between all drives of a group that now come near each other.
@@ -175,7 +136,7 @@ class Merge {
         overlap = &out_.overlaps.back();
         overlap->drive_a = a;
         overlap->drive_b = b;
-      } else if (overlap->test == "cycle" || overlap->test == "pose graph") {
+      } else if (overlap->test == "cycle" || overlap->test == "pose graph" || overlap->test == "quarantine") {
         return;
       }
       overlap->accepted = true;
@@ -205,9 +166,6 @@ class Merge {
     const auto at = std::find_if(out_.overlaps.begin(), out_.overlaps.end(),
                                  [&](const Overlap& o) { return o.drive_a == a && o.drive_b == b; });
     return at == out_.overlaps.end() ? nullptr : &*at;
-  }
-  [[nodiscard]] bool InOneGroup(int a, int b) const {
-    return out_.group_of[static_cast<std::size_t>(a)] == out_.group_of[static_cast<std::size_t>(b)];
   }
   void NoteMissing(const std::map<SubmapKey, bool>& asked) {
     for (const auto& [key, found] : asked) {
