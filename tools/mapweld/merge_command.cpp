@@ -19,7 +19,7 @@
 namespace mapweld::merge {
 namespace {
 
-constexpr int kMapStep = 2;  // every second submap makes the map: 10 m apart, with 50 m of radius
+constexpr int kMapStep = 4;  // every fourth submap makes the map: 20 m apart, with 50 m of radius
 
 struct MergeArguments {
   std::vector<std::filesystem::path> inputs;
@@ -27,6 +27,7 @@ struct MergeArguments {
   std::vector<std::string> truth;
   std::filesystem::path truth_folder;
   int threads = 0;
+  bool exact = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -63,6 +64,7 @@ void RunMerge(const MergeArguments& arguments) {
 
   MergeConfig config;
   config.threads = arguments.threads;
+  config.association.exact = arguments.exact;
   const MergeResult result = MergeDrives(inputs.drives(), inputs, config, &progress);
 
   report::OutcomeInput outcome;
@@ -94,6 +96,7 @@ void AddMergeCommand(CLI::App& app) {
                       "NAME=FILE: true trajectory of a recording, for the errors in the report");
   command->add_option("--truth-folder", arguments->truth_folder,
                       "folder with NAME.tum (or KITTI NAME.txt) for --truth");
+  command->add_flag("--exact", arguments->exact, "compare all pairs of drives in full, whatever their sketches say");
   command->add_option("--threads", arguments->threads, "0: all of the machine; never changes the result")
       ->check(CLI::Range(0, 1024));
   command->callback([arguments] { RunMerge(*arguments); });

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/merge/association.hpp"
 #include "tools/merge/overlap_search.hpp"
 #include "tools/merge/overlap_weight.hpp"
 
@@ -79,25 +78,31 @@ void Summarise(const std::vector<Drive>& drives, const MergeConfig& config, Over
                    geom::Level(At(b, middle.keyframe_b).odom_T_body).Inverse();
 }
 
-PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
-                       const MergeConfig& config) {
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Association& association,
+                       PreparedCache* submaps, const MergeConfig& config) {
   const Drive& drive_a = drives[static_cast<std::size_t>(a)];
   const Drive& drive_b = drives[static_cast<std::size_t>(b)];
   PairOutcome out;
   out.overlap.drive_a = a;
   out.overlap.drive_b = b;
-  const Distances distances = ComputeDistances(drive_a, drive_b);
-  out.difference = ToImage(distances, a, b);
-  const std::vector<Match> matches = Associate(distances, config.association);
-  for (const Match& match : matches) {
-    if (!match.ends || match.score > 0) out.overlap.matches.emplace_back(match.a, match.b);
-  }
-  out.proposed = !out.overlap.matches.empty();
+  out.overlap.test = "no likeness";
+  out.overlap.evidence.sequence_score = association.evidence.sequence;
+  out.overlap.evidence.single_score = association.evidence.single;
+  for (const Match& match : association.matches) out.overlap.matches.emplace_back(match.a, match.b);
+  out.proposed = !association.matches.empty();
+  if (!out.proposed) return out;
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
-  const Hypothesis found = FindOverlap(&finder, FindZones(drive_a, drive_b, matches, config.zones), config.verify);
+  const Hypothesis found =
+      FindOverlap(&finder, FindZones(drive_a, drive_b, association.matches, config.zones), config.verify);
   out.asked = finder.asked();
   out.overlap.accepted = found.test.empty();
   out.overlap.test = found.test.empty() ? "registration" : found.test;
+  PairEvidence& evidence = out.overlap.evidence;
+  evidence.near_pairs = found.near_pairs;
+  evidence.contradictions = found.contradictions;
+  evidence.mean_overlap = found.near_pairs > 0 ? found.overlap / found.near_pairs : 0;
+  evidence.mean_torn = found.near_pairs > 0 ? found.torn / found.near_pairs : 0;
+  evidence.total = found.evidence;
   if (!out.overlap.accepted) return out;
   out.overlap.loops = ToLoops(found.loops);
   out.evidence = found.evidence;
