@@ -19,17 +19,6 @@ struct Loop {
   double weight = 1;         // of the robust optimisation, 0..1
 };
 
-// The numbers behind the verdict on a pair of drives: of the hypothesis that was accepted, or that came furthest.
-struct PairEvidence {
-  double sequence_score = 0;  // of the best line of matches, robust standard deviations above unrelated ones
-  double single_score = 0;    // of the best single match
-  int near_pairs = 0;         // pairs of keyframes that must agree if the drives overlap as supposed, and were tried
-  int contradictions = 0;     // those that did not
-  double mean_overlap = 0;    // of the near pairs: share of the structure of one that the other has too
-  double mean_torn = 0;       // of the near pairs: share of the ground on which next to nothing agrees
-  double total = 0;           // overlap above chance, summed over the loops
-};
-
 // Everything known about one pair of drives that association proposed, accepted or not.
 struct Overlap {
   int drive_a = 0;  // drive_a < drive_b
@@ -40,7 +29,6 @@ struct Overlap {
   geom::Pose3 a_T_b;     // odom frame of b to odom frame of a
   double length_m = 0;   // of the shared stretch
   double weight = 0;     // omega_ij (eq. 9)
-  PairEvidence evidence;
   std::vector<std::pair<int, int>> matches;  // keyframes (a, b) that association proposed
   std::vector<Loop> loops;                   // those that registration confirmed
 };

@@ -86,8 +86,6 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   out.overlap.drive_a = a;
   out.overlap.drive_b = b;
   out.overlap.test = "no likeness";
-  out.overlap.evidence.sequence_score = association.evidence.sequence;
-  out.overlap.evidence.single_score = association.evidence.single;
   for (const Match& match : association.matches) out.overlap.matches.emplace_back(match.a, match.b);
   out.proposed = !association.matches.empty();
   if (!out.proposed) return out;
@@ -97,12 +95,6 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   out.asked = finder.asked();
   out.overlap.accepted = found.test.empty();
   out.overlap.test = found.test.empty() ? "registration" : found.test;
-  PairEvidence& evidence = out.overlap.evidence;
-  evidence.near_pairs = found.near_pairs;
-  evidence.contradictions = found.contradictions;
-  evidence.mean_overlap = found.near_pairs > 0 ? found.overlap / found.near_pairs : 0;
-  evidence.mean_torn = found.near_pairs > 0 ? found.torn / found.near_pairs : 0;
-  evidence.total = found.evidence;
   if (!out.overlap.accepted) return out;
   out.overlap.loops = ToLoops(found.loops);
   out.evidence = found.evidence;

@@ -38,16 +38,6 @@ Json LoopJson(const merge::Loop& loop) {
           {"overlap_ratio", loop.overlap_ratio}, {"residual_m", loop.residual_m}, {"weight", loop.weight}};
 }
 
-Json EvidenceJson(const merge::PairEvidence& evidence) {
-  return {{"sequence_score", evidence.sequence_score},
-          {"single_score", evidence.single_score},
-          {"near_pairs", evidence.near_pairs},
-          {"contradictions", evidence.contradictions},
-          {"mean_overlap", evidence.mean_overlap},
-          {"mean_torn", evidence.mean_torn},
-          {"total", evidence.total}};
-}
-
 // Names come from folders and may hold any bytes: what is no UTF-8 is replaced instead of failing the whole merge.
 std::string Text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -146,7 +136,6 @@ std::string OverlapsJson(const std::vector<merge::Drive>& drives, const merge::M
     entry["length_m"] = overlap.length_m;
     entry["weight"] = overlap.weight;
     entry["transform"] = Matrix4(overlap.a_T_b);
-    entry["evidence"] = EvidenceJson(overlap.evidence);
     entry["matches"] = Json::array();
     for (const auto& [a, b] : overlap.matches) entry["matches"].push_back({a, b});
     entry["loops"] = Json::array();
