@@ -19,7 +19,7 @@
 namespace mapweld::merge {
 namespace {
 
-constexpr int kMapStep = 4;  // every fourth submap makes the map: 20 m apart, with 50 m of radius
+constexpr int kMapStep = 2;  // every second submap makes the map: 10 m apart, with 50 m of radius
 
 struct MergeArguments {
   std::vector<std::filesystem::path> inputs;

@@ -32,8 +32,7 @@ struct ZoneConfig {
   double yaw_slack_rad = 0.35;   // error of the yaw of one match
   double drift = 0.02;           // of the odometry, m per m
   int ransac_rounds = 100;
-  double min_score = 6;  // sum over a zone's matches: less is not worth a registration
-  int max_zones = 10;    // per pair of drives, best first
+  int max_zones = 10;  // per pair of drives, best first
 };
 
 // When a pair of submaps shows the same place, and when a pair of drives overlaps.

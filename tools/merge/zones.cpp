@@ -127,8 +127,7 @@ std::vector<Zone> FindZones(const Drive& a, const Drive& b, const std::vector<Ma
   for (std::size_t i = 0; i < zones.size(); ++i) {
     const bool at_ends = std::any_of(zones[i].matches.begin(), zones[i].matches.end(),
                                      [](const PlacedMatch& m) { return m.match.ends; });
-    const bool counts = static_cast<int>(i) < config.max_zones && zones[i].score >= config.min_score;
-    if (counts || at_ends) kept.push_back(std::move(zones[i]));
+    if (static_cast<int>(i) < config.max_zones || at_ends) kept.push_back(std::move(zones[i]));
   }
   return kept;
 }

@@ -19,8 +19,8 @@ struct Zone {
 // agree by ratio or within the slack.
 bool EdgesAgree(double edge_a_m, double edge_b_m, const ZoneConfig& config);
 
-// Best first: at most config.max_zones of at least config.min_score, and those at the ends of the drives whatever their
-// score. Deterministic: a fixed seed per zone.
+// Best first: at most config.max_zones, and those at the ends of the drives whatever their score. Deterministic: a
+// fixed seed per zone.
 std::vector<Zone> FindZones(const Drive& a, const Drive& b, const std::vector<Match>& matches,
                             const ZoneConfig& config);
 
