@@ -70,7 +70,9 @@ Association Associate(const DrivePlaces& a, const DrivePlaces& b, const Associat
   if (a.descriptors.count == 0 || b.descriptors.count == 0) return out;
   if (!config.exact && !SketchesAgree(a, b, config, &out.evidence)) return out;
   out.compared = true;
-  out.matches = ProposeMatches(ComputeLikeness(ComputeCosines(a.descriptors, b.descriptors)), config);
+  const Cosines cosines = ComputeCosines(a.descriptors, b.descriptors);
+  out.matches = ProposeMatches(ComputeLikeness(cosines), config);
+  if (!out.matches.empty()) out.difference = ToImage(cosines, 0, 0);
   out.evidence = {};
   for (const Match& match : out.matches) {
     double& best = match.sequence ? out.evidence.sequence : out.evidence.single;
