@@ -11,6 +11,10 @@ Cosines ComputeCosines(const DescriptorSet& a, const DescriptorSet& b) {
   return GrowCosines({}, a, b);
 }
 
+Cosines ComputeCosines(const Drive& a, const Drive& b) {
+  return ComputeCosines(CollectDescriptors(a), CollectDescriptors(b));
+}
+
 Cosines GrowCosines(const Cosines& known, const DescriptorSet& a, const DescriptorSet& b) {
   Cosines out;
   out.rows = a.count;

@@ -23,6 +23,7 @@ struct Cosines {
 // Keyframes without a description have cosine 0 with all others. 1024 multiply-adds per entry: about 10 ns with AVX2,
 // 5 with VNNI.
 Cosines ComputeCosines(const DescriptorSet& a, const DescriptorSet& b);
+Cosines ComputeCosines(const Drive& a, const Drive& b);
 
 // The same when both drives may have grown since `known` was computed: only what is new is computed.
 Cosines GrowCosines(const Cosines& known, const DescriptorSet& a, const DescriptorSet& b);

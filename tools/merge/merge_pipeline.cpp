@@ -93,7 +93,9 @@ class Merge {
     for (PairOutcome& outcome : outcomes) {
       if (cache_ != nullptr) cache_->StorePair(drives_, outcome);
       NoteMissing(outcome.asked);
-      if (outcome.proposed) out_.overlaps.push_back(std::move(outcome.overlap));
+      if (!outcome.proposed) continue;
+      out_.overlaps.push_back(std::move(outcome.overlap));
+      differences_[{out_.overlaps.back().drive_a, out_.overlaps.back().drive_b}] = std::move(outcome.difference);
     }
   }
 
@@ -218,10 +220,8 @@ class Merge {
 
   void Finish() {
     for (const Overlap& overlap : out_.overlaps) {
-      if (!overlap.accepted) continue;
-      const Cosines cosines = ComputeCosines(places_[static_cast<std::size_t>(overlap.drive_a)].descriptors,
-                                             places_[static_cast<std::size_t>(overlap.drive_b)].descriptors);
-      out_.differences.push_back(ToImage(cosines, overlap.drive_a, overlap.drive_b));
+      const auto image = differences_.find({overlap.drive_a, overlap.drive_b});
+      if (overlap.accepted && image != differences_.end()) out_.differences.push_back(std::move(image->second));
     }
     out_.missing.assign(missing_.begin(), missing_.end());
   }
@@ -265,6 +265,7 @@ class Merge {
   Progress* progress_;
   MergeCache* cache_;
   MergeResult out_;
+  std::map<std::pair<int, int>, DifferenceMatrix> differences_;
   std::vector<DrivePlaces> places_;  // per drive
   std::vector<Pair> pairs_;          // that are worth a look
   std::set<SubmapKey> missing_;

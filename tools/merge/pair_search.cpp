@@ -89,6 +89,9 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   for (const Match& match : association.matches) out.overlap.matches.emplace_back(match.a, match.b);
   out.proposed = !association.matches.empty();
   if (!out.proposed) return out;
+  out.difference = association.difference;
+  out.difference.drive_a = a;
+  out.difference.drive_b = b;
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
   const Hypothesis found =
       FindOverlap(&finder, FindZones(drive_a, drive_b, association.matches, config.zones), config.verify);
@@ -100,6 +103,13 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   out.evidence = found.evidence;
   Summarise(drives, config, &out.overlap);
   return out;
+}
+
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
+                       const MergeConfig& config) {
+  const DrivePlaces places_a = CollectPlaces(drives[static_cast<std::size_t>(a)]);
+  const DrivePlaces places_b = CollectPlaces(drives[static_cast<std::size_t>(b)]);
+  return SearchPair(drives, a, b, Associate(places_a, places_b, config.association), submaps, config);
 }
 
 }  // namespace mapweld::merge

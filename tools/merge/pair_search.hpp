@@ -15,11 +15,15 @@ struct PairOutcome {
   Overlap overlap;                  // accepted or not, with the loops; weight not yet set
   bool proposed = false;            // association had something to say
   double evidence = 0;              // of the accepted loops, summed
+  DifferenceMatrix difference;      // when proposed
   std::map<SubmapKey, bool> asked;  // submaps wanted, and whether they were there
 };
 
 PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Association& association,
                        PreparedCache* submaps, const MergeConfig& config);
+// For one pair alone: its association first.
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
+                       const MergeConfig& config);
 
 // Loops in the form of the result; at most one per pair of keyframes.
 std::vector<Loop> ToLoops(const std::vector<VerifiedLoop>& loops);
