@@ -8,10 +8,17 @@ namespace mapweld::merge {
 
 // Which keyframes of two drives could show the same place.
 struct AssociationConfig {
+  bool exact = false;                // compare every pair of drives in full, whatever the sketches say
+  int sketch_step = 1;               // keyframes from one sketch of the first drive that is compared to the next
+  int min_sketched_keyframes = 24;   // a shorter drive is always compared in full: its mean would hide its places
+  double min_sketch_sequence = 5.0;  // robust standard deviations; from here on a pair is compared in full
+  double min_sketch_single = 5.5;
   int min_sequence = 4;  // keyframes; shorter lines of matches are left to the single matches
   int max_sequence = 16;
   double min_sequence_score = 3.5;  // robust standard deviations above what unrelated stretches reach
   double min_single_score = 2.0;    // the same for one keyframe
+  double min_end_score = 2.0;       // the same where drives begin and end
+  int end_keyframes = 4;            // that count as an end
   int max_sequence_matches = 24;    // per pair of drives
   int max_single_matches = 16;      // per pair of drives
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -33,6 +34,14 @@ void CheckDrives(const std::vector<Drive>& drives) {
   }
 }
 
+// A pair of drives on its way from association to registration.
+struct Pair {
+  int a = 0;
+  int b = 0;
+  Association association;
+  std::optional<PairOutcome> known;  // from the last merge
+};
+
 class Merge {
  public:
   Merge(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config, Progress* progress,
@@ -40,6 +49,7 @@ class Merge {
       : drives_(drives), config_(config), submaps_(&submaps), progress_(progress), cache_(cache) {}
 
   MergeResult Run() {
+    Time("association", [&] { AssociatePairs(); });
     Time("pairs", [&] { SearchPairs(); });
     Time("cycles", [&] { CheckCycles(drives_, config_.verify, &out_.overlaps); });
     Time("groups", [&] { GroupAndSolve(); });
@@ -55,23 +65,38 @@ class Merge {
   }
 
  private:
-  // Difference matrix, sequences, zones, registration: every pair of drives on its own.
+  // Sketches, difference matrices, sequences: every pair of drives on its own, one job per drive and all those after
+  // it.
+  void AssociatePairs() {
+    const std::size_t n = drives_.size();
+    places_.resize(n);
+    InParallel("association", n, [&](std::size_t i) { places_[i] = CollectPlaces(drives_[i]); });
+    std::vector<std::vector<Pair>> found(n);
+    InParallel("association", n, [&](std::size_t a) {
+      for (std::size_t b = a + 1; b < n; ++b) {
+        Pair pair{static_cast<int>(a), static_cast<int>(b), {}, {}};
+        if (cache_ != nullptr) pair.known = cache_->FindPair(drives_, pair.a, pair.b, &submaps_);
+        if (!pair.known.has_value()) pair.association = Associate(places_[a], places_[b], config_.association);
+        if (pair.known.has_value() || !pair.association.matches.empty() || cache_ != nullptr) {
+          found[a].push_back(std::move(pair));
+        }
+      }
+    });
+    for (std::vector<Pair>& of_drive : found) std::move(of_drive.begin(), of_drive.end(), std::back_inserter(pairs_));
+  }
+
+  // Zones and registration, of pairs with matches.
   void SearchPairs() {
-    std::vector<std::pair<int, int>> pairs;
-    for (int a = 0; a < static_cast<int>(drives_.size()); ++a) {
-      for (int b = a + 1; b < static_cast<int>(drives_.size()); ++b) pairs.emplace_back(a, b);
-    }
-    std::vector<PairOutcome> outcomes(pairs.size());
-    InParallel("pairs", pairs.size(), [&](std::size_t i) {
-      const auto [a, b] = pairs[i];
-      std::optional<PairOutcome> known;
-      if (cache_ != nullptr) known = cache_->FindPair(drives_, a, b, &submaps_);
-      outcomes[i] = known.has_value() ? std::move(*known) : SearchPair(drives_, a, b, &submaps_, config_);
+    std::vector<PairOutcome> outcomes(pairs_.size());
+    InParallel("pairs", pairs_.size(), [&](std::size_t i) {
+      Pair& pair = pairs_[i];
+      outcomes[i] = pair.known.has_value() ? std::move(*pair.known)
+                                           : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
     });
     for (PairOutcome& outcome : outcomes) {
       if (cache_ != nullptr) cache_->StorePair(drives_, outcome);
       NoteMissing(outcome.asked);
-      if (!outcome.proposed && !outcome.overlap.accepted) continue;
+      if (!outcome.proposed) continue;
       out_.overlaps.push_back(std::move(outcome.overlap));
       differences_[{out_.overlaps.back().drive_a, out_.overlaps.back().drive_b}] = std::move(outcome.difference);
     }
@@ -199,6 +224,8 @@ class Merge {
   MergeCache* cache_;
   MergeResult out_;
   std::map<std::pair<int, int>, DifferenceMatrix> differences_;
+  std::vector<DrivePlaces> places_;  // per drive
+  std::vector<Pair> pairs_;          // that are worth a look
   std::set<SubmapKey> missing_;
 };
 
