@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "tools/merge/cosine_kernel.hpp"
 #include "tools/merge/difference.hpp"
 #include "tools/store/history.hpp"
 
@@ -31,13 +32,13 @@ int GroupOf(const MergeRecord& record, std::int32_t drive) {
 
 // The two keyframes that are most alike, from the descriptors alone.
 std::string Likeness(const merge::Drive& a, const merge::Drive& b) {
-  const merge::Distances distances = merge::ComputeDistances(a, b);
-  if (distances.d.empty()) return "";
-  const auto best = std::min_element(distances.d.begin(), distances.d.end()) - distances.d.begin();
+  const merge::Cosines cosines = merge::ComputeCosines(a, b);
+  if (cosines.c.empty()) return "";
+  const auto best = std::max_element(cosines.c.begin(), cosines.c.end()) - cosines.c.begin();
+  const double cosine = static_cast<double>(cosines.c[static_cast<std::size_t>(best)]) / merge::kCosineUnit;
   return fmt::format(
       "most alike    keyframe {} of {} and {} of {}, descriptor distance {:.3f} (0 the same, 1 nothing in common)\n",
-      best / distances.cols, a.name, best % distances.cols, b.name,
-      static_cast<double>(distances.d[static_cast<std::size_t>(best)]));
+      best / cosines.cols, a.name, best % cosines.cols, b.name, 1 - cosine);
 }
 
 std::string Loops(const merge::Overlap& overlap) {

@@ -109,7 +109,7 @@ void PairMemory::Fill(merge::MergeCache* cache, merge::SubmapSource* submaps) {
       for (const auto& [key, found] : pair->asked) outcome.asked[{key.drive == 0 ? a : b, key.keyframe}] = found;
       // The image is for the report, which shows overlaps only.
       const bool shown = outcome.proposed || outcome.overlap.accepted;
-      if (shown) outcome.difference = merge::ToImage(merge::ComputeDistances(DriveAt(a), DriveAt(b)), a, b);
+      if (shown) outcome.difference = merge::ToImage(merge::ComputeCosines(DriveAt(a), DriveAt(b)), a, b);
       cache->StorePair(*drives_, outcome);
     }
   }
