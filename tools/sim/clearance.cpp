@@ -31,7 +31,6 @@ Clearance::Clearance(const Town& town, const Sight& sight) {
     }
   }
   for (const Building& building : town.buildings) {
-    if (!sight.Contains(building.footprint.front())) continue;
     Box2 box;
     for (const Vec2d& p : building.footprint) box.Extend(p);
     buildings_.Add(box.Grown(kReach_m), &building);
