@@ -271,7 +271,7 @@ TEST(PartitionedNetwork, HealsWithEverythingFromTheTimeApart) {
   const auto port = static_cast<std::uint16_t>(20'000 + ::getpid() % 20'000);
   const auto other_port = static_cast<std::uint16_t>(port + 20'001);
   const test::TemporaryDirectory directory;
-  SmallAgent agent(Url(port));
+  SmallAgent agent(Url(port), directory.path().string(), 1);
   Relay relay(port, other_port, 0.1, 7);
   if (!agent.good() || !relay.good()) GTEST_SKIP() << "no multicast on this machine: " << std::strerror(errno);
   const serve::DriveId id{3, 1};
@@ -339,7 +339,9 @@ TEST_P(LossyNetwork, BringsTheKeyframesOfTheDriveBeforeAReboot) {
   serve::Requester requester(&host);
   const serve::DriveId before{3, 1};
   const serve::DriveId after{3, 2};
-  requester.Want(before, wanted);
+  std::vector<serve::Requester::Submap> submaps;
+  for (const std::int32_t keyframe : wanted) submaps.push_back({before, keyframe});
+  requester.Want(submaps);
 
   const auto keyframes = [&](const serve::DriveId& id) {
     return host.WithStore([&](const serve::FleetStore& store) {

@@ -14,10 +14,11 @@ void Presence::Heard(const DriveId& id, Clock::time_point now) {
 }
 
 bool Presence::IsHere(const DriveId& id, Clock::time_point now) const {
-  const auto at = heard_.find(id);
-  if (at == heard_.end() || now - at->second.last > kSilence) return false;
-  const auto later = std::next(at);
-  return later == heard_.end() || later->first.agent != id.agent || twins_.contains(id.agent);
+  // An agent that has started again answers for its earlier drives from its spool.
+  for (auto at = heard_.lower_bound(id); at != heard_.end() && at->first.agent == id.agent; ++at) {
+    if (now - at->second.last <= kSilence) return true;
+  }
+  return false;
 }
 
 }  // namespace mapweld::serve

@@ -12,7 +12,7 @@
 namespace mapweld::serve {
 
 // An agent sends health ten times a second. One that has been silent for kSilence is gone: nobody waits for it, and
-// when it returns everything goes on. One that has started again no longer has what it recorded before.
+// when it returns everything goes on. One that has started again still has in its spool what it recorded before.
 class Presence {
  public:
   using Clock = std::chrono::steady_clock;
