@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "tools/eval/merge_score.hpp"
+#include "tools/eval/places_command.hpp"
 #include "tools/io/trajectory_file.hpp"
 #include "tools/io/unique_names.hpp"
 
@@ -149,6 +150,7 @@ void AddEvalCommand(CLI::App& app) {
   eval->require_subcommand(1);
   AddTrajectories(*eval);
   AddMerge(*eval);
+  AddPlacesCommand(*eval);
 }
 
 }  // namespace mapweld::eval
