@@ -27,17 +27,19 @@ void Run(const Arguments& arguments) {
   const bool is_log = arguments.recording.extension() == ".lcm";
   std::string variant = arguments.variant;
   if (variant.empty()) variant = is_log ? kPublished : VariantNames().front();
+  CheckVariants(arguments.recording, {variant});
   merge::TerminalProgress progress("describe");
-  const std::vector<DescribedDrive> drives =
-      DescribeDrives(arguments.recording, {variant}, arguments.threads, &progress);
-  progress.Finish();
-  if (drives.size() > 1) {
+  const std::vector<KeyframeSource> sources =
+      OpenKeyframes(arguments.recording, kSubmapRadius_m, arguments.threads, &progress);
+  if (sources.size() > 1) {
     throw std::runtime_error(fmt::format("{} holds {} drives, and a table is of one; split the log by agent",
-                                         arguments.recording.string(), drives.size()));
+                                         arguments.recording.string(), sources.size()));
   }
-  WritePlaceTable(arguments.out, drives[0].variants[0]);
-  fmt::print("{}: {} keyframes by {}", arguments.out.string(), drives[0].times.size(), variant);
-  if (drives[0].refused[0] > 0) fmt::print("; {} of them have nothing to describe (scale 0)", drives[0].refused[0]);
+  const DescribedDrive drive = DescribeKeyframes(sources[0], {variant}, arguments.threads, &progress);
+  progress.Finish();
+  WritePlaceTable(arguments.out, drive.variants[0]);
+  fmt::print("{}: {} keyframes by {}", arguments.out.string(), drive.variants[0].size(), variant);
+  if (drive.refused[0] > 0) fmt::print("; {} of them have nothing to describe (scale 0)", drive.refused[0]);
   fmt::print("\n");
 }
 

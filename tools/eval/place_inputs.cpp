@@ -8,8 +8,7 @@
 
 #include "tools/describe/described_drive.hpp"
 #include "tools/describe/variants.hpp"
-#include "tools/eval/trajectory_error.hpp"
-#include "tools/io/tum.hpp"
+#include "tools/eval/place_sessions.hpp"
 
 namespace mapweld::eval {
 namespace {
@@ -45,27 +44,6 @@ class TaskBuilder {
   PlaceTask task_;
   std::shared_ptr<PlaceSet> set_ = std::make_shared<PlaceSet>();
 };
-
-// Puts the truth in place of the positions and drops keyframes at times without truth.
-void TakeTruth(const fs::path& folder, DescribedDrive* drive) {
-  const fs::path file = folder / (drive->name + ".tum");
-  if (!fs::exists(file))
-    throw std::runtime_error(fmt::format("{} is missing: the truth of {}", file.string(), drive->name));
-  const std::vector<io::StampedPose> truth = io::ReadTum(file);
-  std::size_t dropped = 0;
-  for (std::vector<PlaceRow>& rows : drive->variants) {
-    std::vector<PlaceRow> kept;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      geom::Pose3 world_T_body;
-      if (!TruthAt(truth, drive->times[i], &world_T_body)) continue;
-      kept.push_back(rows[i]);
-      kept.back().position = world_T_body.t;
-    }
-    dropped = rows.size() - kept.size();
-    rows = std::move(kept);
-  }
-  if (dropped > 0) fmt::print(stderr, "note: {}: {} keyframes have no truth at their time\n", drive->name, dropped);
-}
 
 struct NamedTable {
   std::string name;
@@ -104,21 +82,15 @@ std::vector<PlaceTask> TasksOfRecordings(const std::vector<std::string>& inputs,
     builders.emplace_back(
         name, name == describe::kPublished ? describe::MakeCosineComparison() : describe::MakeVariant(name));
   }
-  int logs = 0;
-  int drives = 0;
-  for (const std::string& input : inputs) {
-    logs += fs::path(input).extension() == ".lcm" ? 1 : 0;
-    progress->SetSubject(fs::path(input).filename().string());
-    for (DescribedDrive& drive : describe::DescribeDrives(input, variants, arguments.threads, progress)) {
-      if (!arguments.truth_folder.empty()) TakeTruth(arguments.truth_folder, &drive);
-      for (std::size_t v = 0; v < variants.size(); ++v) builders[v].AddSession(drive.name, drive.variants[v]);
-      ++drives;
-      if (logs > 0 && drives > 1 && arguments.truth_folder.empty()) {
-        throw std::runtime_error("each log of an agent has a frame of its own; several need --truth-folder");
-      }
-    }
-  }
-  progress->SetSubject("");
+  for (const std::string& input : inputs) describe::CheckVariants(input, variants);
+  SessionArguments sessions;
+  sessions.inputs = inputs;
+  sessions.truth_folder = arguments.truth_folder;
+  sessions.threads = arguments.threads;
+  ForEachSession(sessions, progress, [&](const describe::KeyframeSource& source) {
+    const DescribedDrive drive = describe::DescribeKeyframes(source, variants, arguments.threads, progress);
+    for (std::size_t v = 0; v < variants.size(); ++v) builders[v].AddSession(drive.name, drive.variants[v]);
+  });
   std::vector<PlaceTask> tasks;
   for (TaskBuilder& builder : builders) tasks.push_back(builder.Take());
   return tasks;

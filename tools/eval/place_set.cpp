@@ -33,6 +33,11 @@ double PlaceSet::Metres(int i, int j) const {
   return (At(i).position - At(j).position).norm();
 }
 
+geom::Vec3d PlaceSet::LeftOf(int i, double left_m) const {
+  const Eigen::Vector2d& travel = At(i).travel;
+  return At(i).position + left_m * geom::Vec3d{-travel.y(), travel.x(), 0};
+}
+
 Direction PlaceSet::DirectionBetween(int i, int j) const {
   const double cosine = At(i).travel.dot(At(j).travel);
   if (cosine > 0.5) return Direction::kForward;

@@ -27,6 +27,9 @@ class PlaceSet {
   [[nodiscard]] bool IsCandidate(int query, int j) const;
   // In three dimensions, so that a bridge is not the street under it.
   [[nodiscard]] double Metres(int i, int j) const;
+  [[nodiscard]] const geom::Vec3d& Position(int i) const { return At(i).position; }
+  // The place `left_m` to the left of a keyframe, as the vehicle travels.
+  [[nodiscard]] geom::Vec3d LeftOf(int i, double left_m) const;
   // By the directions of travel, each from the keyframe before to the keyframe after, in the plane.
   [[nodiscard]] Direction DirectionBetween(int i, int j) const;
 

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tools/describe/variants.hpp"
 #include "tools/eval/place_inputs.hpp"
+#include "tools/report/line_chart.hpp"
 
 namespace mapweld::eval {
 namespace {
@@ -51,7 +53,23 @@ VariantScore Score(const PlaceTask& task, int threads, merge::TerminalProgress* 
           ScorePlaces(*task.set, distance, threads, progress)};
 }
 
-void Run(const PlaceArguments& arguments, bool json) {
+// Precision over recall, and recall over the number of candidates looked at.
+std::vector<report::LineChart> Charts(const std::vector<VariantScore>& scores) {
+  report::LineChart curves{
+      "best matches, hits within 10 m", {"recall", 0, 1, 0.2}, {"precision", 0, 1, 0.2}, {}, false};
+  report::LineChart recalls{"among the nearest N", {"N", 0, 20, 5}, {"Recall@N", 0, 1, 0.2}, {}, true};
+  for (const VariantScore& s : scores) {
+    curves.series.push_back({s.variant, {}});
+    for (const PrecisionRecall& p : s.score[1].curve) curves.series.back().points.push_back({p.recall, p.precision});
+    recalls.series.push_back({s.variant, {}});
+    for (std::size_t n = 0; n < kRecallRanks.size(); ++n) {
+      recalls.series.back().points.push_back({static_cast<double>(kRecallRanks[n]), s.score[1].all.at[n]});
+    }
+  }
+  return {curves, recalls};
+}
+
+void Run(const PlaceArguments& arguments, const std::filesystem::path& plot, bool json) {
   merge::TerminalProgress progress("eval");
   std::vector<VariantScore> scores;
   for (const PlaceTask& task : LoadPlaceTasks(arguments, &progress)) {
@@ -59,6 +77,9 @@ void Run(const PlaceArguments& arguments, bool json) {
   }
   progress.Finish();
   fmt::print("{}", json ? PlaceJson(scores) : PlaceTable(scores));
+  if (plot.empty()) return;
+  const std::string note = report::WriteCharts(plot, Charts(scores));
+  if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
 }
 
 }  // namespace
@@ -110,6 +131,7 @@ std::string PlaceJson(const std::vector<VariantScore>& scores) {
 void AddPlacesCommand(CLI::App& eval) {
   CLI::App* const command = eval.add_subcommand("places", "how well descriptors recognise places");
   const auto arguments = std::make_shared<PlaceArguments>();
+  const auto plot = std::make_shared<std::filesystem::path>();
   const auto json = std::make_shared<bool>(false);
   command
       ->add_option(
@@ -126,8 +148,9 @@ void AddPlacesCommand(CLI::App& eval) {
                       "NAME.tum for each recording or log: true positions instead of its own");
   command->add_option("--threads", arguments->threads, "0: all of the machine; never changes the result")
       ->check(CLI::Range(0, 1024));
+  command->add_option("--plot", *plot, "write the curves as FILE.svg and FILE.png");
   command->add_flag("--json", *json, "print JSON instead of a table");
-  command->callback([arguments, json] { Run(*arguments, *json); });
+  command->callback([arguments, plot, json] { Run(*arguments, *plot, *json); });
 }
 
 }  // namespace mapweld::eval

@@ -99,9 +99,9 @@ TEST(ScanContext, KeepsTheHeightOfTheHighestPointOfEachCell) {
   ASSERT_EQ(method.Describe(*submap, &place), Status::kOk);
   EXPECT_FLOAT_EQ(place.descriptor.scale, 0.1F);
   EXPECT_EQ(place.descriptor.q[0], 127);
-  EXPECT_EQ(place.descriptor.q[1], 10);   // 1 m
+  EXPECT_EQ(place.descriptor.q[1], 10);  // 1 m
   EXPECT_EQ(place.descriptor.q[19], 10);
-  EXPECT_EQ(place.descriptor.q[20], 0);   // the next sector
+  EXPECT_EQ(place.descriptor.q[20], 0);  // the next sector
 }
 
 TEST(ScanContext, IsTheSameAfterWholeSectorsOfTurn) {

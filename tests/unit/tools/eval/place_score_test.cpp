@@ -69,8 +69,8 @@ TEST(PlaceScore, CountsAKeyframeWithoutDescriptorAsMissed) {
   };
   const RadiusScore at = ScorePlaces(ThereAndBack(), distance, 1, nullptr)[1];
   EXPECT_EQ(at.all.queries, 6);
-  EXPECT_DOUBLE_EQ(at.all.at[0], 2.0 / 6);           // 0 and 5 have lost one another
-  EXPECT_DOUBLE_EQ(at.all.at[3], 4.0 / 6);           // at any rank
+  EXPECT_DOUBLE_EQ(at.all.at[0], 2.0 / 6);  // 0 and 5 have lost one another
+  EXPECT_DOUBLE_EQ(at.all.at[3], 4.0 / 6);  // at any rank
   EXPECT_DOUBLE_EQ(at.curve.back().recall, 2.0 / 6);
 }
 
@@ -88,16 +88,17 @@ TEST(PlaceScore, AsksInOneSessionOnlyForWhatLiesSixtyMetresOfPathBack) {
   EXPECT_FALSE(set.IsCandidate(5, 0));
   EXPECT_TRUE(set.IsCandidate(6, 0));
   EXPECT_FALSE(set.IsCandidate(0, 6));
-  const RadiusScore at = ScorePlaces(set, [](int i, int j) { return static_cast<float>(i - j); }, 1, nullptr)[0];
+  const RadiusScore at = ScorePlaces(
+      set, [](int i, int j) { return static_cast<float>(i - j); }, 1, nullptr)[0];
   EXPECT_EQ(at.all.queries, 5);  // the last five keyframes are where the first were
 }
 
 // East along a street that another drive has gone east and a third one crosses.
 TEST(PlaceScore, JudgesCrossingsWithoutTheKeyframesThatPassedInTheSameDirection) {
   PlaceSet set;
-  set.AddSession("query", {{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}});         // 0 1 2
-  set.AddSession("same street", {{-12, 1, 0}, {0, 1, 0}, {12, 1, 0}});  // 3 4 5
-  set.AddSession("crossing", {{0, -8, 0}, {0, 0, 0}, {0, 8, 0}});       // 6 7 8
+  set.AddSession("query", {{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}});                     // 0 1 2
+  set.AddSession("same street", {{-12, 1, 0}, {0, 1, 0}, {12, 1, 0}});             // 3 4 5
+  set.AddSession("crossing", {{0, -8, 0}, {0, 0, 0}, {0, 8, 0}});                  // 6 7 8
   const auto distance = [](int, int j) { return static_cast<float>(j) * 0.01F; };  // the same street looks nearest
   const RadiusScore at = ScorePlaces(set, distance, 1, nullptr)[1];
   // Queries 0, 1, 2 find 6; queries 3, 4, 5 find a hit among 6, 7, 8 only when theirs is first; 6, 7, 8 find 0.
@@ -107,10 +108,13 @@ TEST(PlaceScore, JudgesCrossingsWithoutTheKeyframesThatPassedInTheSameDirection)
 
 TEST(PlaceScore, SaysThatAnEmptySetHasNothingToRecognise) {
   PlaceSet set;
-  EXPECT_THAT(test::ErrorOf([&] { set.AddSession("short", {{0, 0, 0}, {5, 0, 0}}); }),
+  EXPECT_THAT(test::ErrorOf([&] {
+                set.AddSession("short", {{0, 0, 0}, {5, 0, 0}});
+              }),
               HasSubstr("short has 2 keyframes"));
   set.AddSession("straight", {{0, 0, 0}, {5, 0, 0}, {10, 0, 0}});
-  const RadiusScore at = ScorePlaces(set, [](int, int) { return 0.0F; }, 1, nullptr)[1];
+  const RadiusScore at = ScorePlaces(
+      set, [](int, int) { return 0.0F; }, 1, nullptr)[1];
   EXPECT_EQ(at.all.queries, 0);
   EXPECT_EQ(at.f1_max, 0);
   EXPECT_TRUE(at.curve.empty());
