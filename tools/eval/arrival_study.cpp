@@ -40,9 +40,9 @@ int CountMixed(const Groups& groups, const std::vector<int>& zones) {
 
 MergedDrives ReadMergedDrives(const std::filesystem::path& folder) {
   MergedDrives drives;
-  WithJson(folder / "groups.json", [&](const auto& json) {
+  WithJson(folder / "groups.json", [&](const nlohmann::ordered_json& json) {
     for (const auto& group : json.at("groups")) {
-      for (const auto& name : group.at("recordings")) drives.names.push_back(name);
+      for (const auto& name : group.at("recordings")) drives.names.push_back(name.get<std::string>());
     }
   });
   std::sort(drives.names.begin(), drives.names.end());
@@ -53,11 +53,11 @@ MergedDrives ReadMergedDrives(const std::filesystem::path& folder) {
     }
     return static_cast<int>(at - drives.names.begin());
   };
-  WithJson(folder / "overlaps.json", [&](const auto& json) {
+  WithJson(folder / "overlaps.json", [&](const nlohmann::ordered_json& json) {
     for (const auto& overlap : json.at("overlaps")) {
       if (overlap.at("verdict") != "accepted") continue;
       drives.overlaps.push_back({index(overlap.at("pair").at(0)), index(overlap.at("pair").at(1)),
-                                 overlap.at("length_m"), overlap.at("weight")});
+                                 overlap.at("length_m").get<double>(), overlap.at("weight").get<double>()});
     }
   });
   return drives;

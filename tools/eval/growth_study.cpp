@@ -34,8 +34,12 @@ enum class Meeting { kNone, kCrossing, kOverlap };
 Meeting MeetingOf(const KeyframeSource& a, std::size_t a_count, const KeyframeSource& b, std::size_t b_count) {
   if (a_count < 3 || b_count < 3) return Meeting::kNone;
   PlaceSet set;
-  set.AddSession(a.drive.name, {a.positions.begin(), a.positions.begin() + static_cast<std::ptrdiff_t>(a_count)});
-  set.AddSession(b.drive.name, {b.positions.begin(), b.positions.begin() + static_cast<std::ptrdiff_t>(b_count)});
+  const auto first = [](const KeyframeSource& source, std::size_t count) {
+    return std::vector<geom::Vec3d>(source.positions.begin(),
+                                    source.positions.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  set.AddSession(a.drive.name, first(a, a_count));
+  set.AddSession(b.drive.name, first(b, b_count));
   Meeting meeting = Meeting::kNone;
   double shared_m = 0;
   for (int i = 0; i < static_cast<int>(a_count); ++i) {
