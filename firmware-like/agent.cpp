@@ -37,7 +37,7 @@ bool Agent::Boot(std::span<char> message) {
   };
   char path[512];
   std::snprintf(path, sizeof(path), "%s/spool", options_.state_dir);
-  if (spool_.Open(path, static_cast<std::uint64_t>(options_.spool_bytes), telemetry_.identity().epoch) != Status::kOk) {
+  if (spool_.Open(path, static_cast<std::uint64_t>(options_.spool_bytes)) != Status::kOk) {
     return fail("cannot reserve %lld MiB for the spool %s: %s; free the disk or give a smaller --spool-mib",
                 static_cast<long long>(options_.spool_bytes >> 20), path, std::strerror(errno));
   }
@@ -165,22 +165,29 @@ void Agent::TakeBus() {
 void Agent::OnMessage(std::string_view channel, std::span<const std::uint8_t> payload) {
   const auto parsed = messages::ParseChannel(channel);
   if (!parsed.ok()) return;
-  if (parsed.value().kind == messages::Kind::kRequest) {
-    mapweldlcm::request_t request;
-    if (messages::Decode(payload, &request) == Status::kOk && request.epoch == telemetry_.identity().epoch) {
-      answers_.Add(request);
-    }
-  } else if (parsed.value().kind == messages::Kind::kGlobalPose) {
-    mapweldlcm::global_pose_t pose;
-    if (messages::Decode(payload, &pose) == Status::kOk && pose.epoch == telemetry_.identity().epoch)
-      OnGlobalPose(pose);
-  } else if (parsed.value().kind == messages::Kind::kCommand) {
-    mapweldlcm::command_t command;
-    if (messages::Decode(payload, &command) == Status::kOk &&
-        command.command == mapweldlcm::command_t::COMMAND_END_DRIVE) {
+  // false, and counted: another type, another version of it, or a field out of range.
+  const auto decode = [&](auto* message) {
+    const bool good = messages::Decode(payload, message) == Status::kOk;
+    messages_refused_ += good ? 0 : 1;
+    return good;
+  };
+  mapweldlcm::request_t request;
+  mapweldlcm::global_pose_t pose;
+  mapweldlcm::command_t command;
+  switch (parsed.value().kind) {
+    case messages::Kind::kRequest:
+      if (decode(&request)) answers_.Add(request);
+      break;
+    case messages::Kind::kGlobalPose:
+      if (decode(&pose) && pose.epoch == telemetry_.identity().epoch) OnGlobalPose(pose);
+      break;
+    case messages::Kind::kCommand:
+      if (!decode(&command)) break;  // the only command there is: end of the drive
       EndDrive();
       PublishHealth();
-    }
+      break;
+    default:
+      break;  // what agents say
   }
 }
 
@@ -215,13 +222,18 @@ void Agent::OnPose(const pipeline::PoseOutput& pose) {
 void Agent::OnKeyframe(const pipeline::KeyframeOutput& keyframe) {
   const auto encoded = telemetry_.PublishKeyframe(keyframe);
   // What does not fit the spool is counted there and cannot be sent again; the odometry goes on.
-  (void)spool_.Append(static_cast<std::uint8_t>(RecordKind::kKeyframe), keyframe.index, encoded);
-  (void)spool_.Append(static_cast<std::uint8_t>(RecordKind::kSubmap), keyframe.index, keyframe.encoded);
+  const auto key = [&](RecordKind kind) {
+    return spool::RecordSpool::Key{telemetry_.identity().epoch, static_cast<std::uint8_t>(kind), keyframe.index};
+  };
+  (void)spool_.Append(key(RecordKind::kKeyframe), encoded);
+  (void)spool_.Append(key(RecordKind::kSubmap), keyframe.encoded);
   spool_dirty_ = true;
 }
 
 void Agent::Housekeep(TimeNs now) {
   if (idle_health_.Due(now)) PublishHealth();
+  if (replug_.Due(now)) imu_.Reconnect();
+  if (remind_.Due(now)) answers_.RemindOfEarlierDrives();
   if (!slow_.Due(now)) return;
   watchdog_.Alive();
   if (spool_dirty_ && spool_.Sync() == Status::kOk) spool_dirty_ = false;
@@ -246,7 +258,7 @@ void Agent::PublishHealth() {
   health.keyframes = static_cast<std::int32_t>(counters.keyframes);
   health.submaps_sent = answers_.submaps_sent();
   health.bytes_sent = count(bus_.counters().sent_bytes);
-  health.bus_rejected = count(bus_.Rejected());
+  health.bus_rejected = count(bus_.Rejected() + messages_refused_);
   health.scan_ms_mean =
       static_cast<float>(counters.scans > 0 ? scan_ms_sum_ / static_cast<double>(counters.scans) : 0.0);
   health.scan_ms_max = static_cast<float>(scan_ms_max_);

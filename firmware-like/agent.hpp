@@ -75,9 +75,12 @@ class Agent final : private pipeline::AgentSink {
   double scan_ms_sum_ = 0;
   double scan_ms_max_ = 0;
   bool spool_dirty_ = false;
+  std::uint64_t messages_refused_ = 0;
   RateGroup sensor_health_{Milliseconds(50)};  // of sensor time
   RateGroup idle_health_{Milliseconds(100)};   // of real time
-  RateGroup slow_{Milliseconds(1000)};         // spool to disk, watchdog
+  RateGroup replug_{Milliseconds(200)};        // looks for an interface that was unplugged
+  RateGroup remind_{AnswerQueue::kRemindEvery};
+  RateGroup slow_{Milliseconds(1000)};  // spool to disk, watchdog
 };
 
 }  // namespace mapweld::executive

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers the host's requests from the spool, a chunk at a time, never faster than the byte budget.
+// Answers the host's requests from the spool, a chunk at a time, never faster than the byte budget. Keyframes and
+// submaps of earlier boots are answered like those of this one. The host may not know how far an earlier drive came,
+// because what was said last was lost or never sent: the last keyframe of one earlier boot after the other is said
+// again now and then, and the host asks for what lies before it.
 #pragma once
 
 #include <array>
@@ -20,10 +23,16 @@ enum class RecordKind : std::uint8_t { kKeyframe = 0, kSubmap = 1 };
 class AnswerQueue {
  public:
   AnswerQueue(std::int64_t bytes_per_s, spool::RecordSpool* spool, Telemetry* telemetry)
-      : budget_(bytes_per_s, kBurstBytes), spool_(spool), telemetry_(telemetry) {}
+      : budget_(bytes_per_s, kBurstBytes),
+        spool_(spool),
+        telemetry_(telemetry),
+        reminded_epoch_(telemetry->identity().epoch) {}
 
   // Takes what is not queued yet. When kCap.request_queue answers wait, the rest is dropped: the host asks again.
   void Add(const mapweldlcm::request_t& request);
+  // Queues the last keyframe of the next earlier boot. Call every kRemindEvery.
+  void RemindOfEarlierDrives();
+  static constexpr DurationNs kRemindEvery = Milliseconds(10'000);
   // Sends as much as the budget allows at time now (monotonic). True while something is left.
   bool Step(TimeNs now);
 
@@ -31,12 +40,9 @@ class AnswerQueue {
 
  private:
   static constexpr std::int64_t kBurstBytes = 32 * 1400;
-  struct Answer {
-    RecordKind kind = RecordKind::kKeyframe;
-    std::int32_t index = 0;
-  };
+  using Answer = spool::RecordSpool::Key;
 
-  [[nodiscard]] bool IsQueued(const Answer& answer) const;
+  void Queue(const Answer& answer);
   bool LoadNext();
 
   ByteBudget budget_;
@@ -47,6 +53,7 @@ class AnswerQueue {
   std::size_t bytes_ = 0;
   std::size_t offset_ = 0;
   std::int32_t submaps_sent_ = 0;
+  std::int32_t reminded_epoch_;
   std::array<std::uint8_t, kCap.submap_encoded_bytes> record_{};
 };
 

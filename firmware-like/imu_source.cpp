@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-like/imu_source.hpp"
 
-#include "drivers/can/xsens_table.hpp"
 #include "firmware-like/read_file.hpp"
 
 namespace mapweld::executive {
@@ -9,7 +8,9 @@ namespace {
 
 can::XsensOptions CodecOptions(const Options& options) {
   can::XsensOptions codec;
+  codec.ids = options.imu_ids;
   codec.sample_time_unit = can::SampleTimeUnit::kDetect;
+  codec.inertial_order = can::InertialOrder::kDetect;
   codec.clock_mode = options.time_source == TimeSource::kShared ? time::ClockMode::kShared : time::ClockMode::kReceive;
   return codec;
 }
@@ -31,7 +32,7 @@ Status ImuSource::LoadDescription(const Options& options) {
 
 Status ImuSource::Open(const Options& options) {
   if (replayed_) return log_.Open(options.candump_path);
-  return socket_.Open(options.can_interface, described_ ? dbc_.wanted_ids() : std::span(can::kXsensWantedIds));
+  return socket_.Open(options.can_interface, described_ ? dbc_.wanted_ids() : std::span(options.imu_ids.all()));
 }
 
 void ImuSource::Push(const can::CanFrame& frame, pipeline::AgentPipeline* pipeline) {

@@ -27,6 +27,10 @@ class ImuSource {
 
   // Live: takes what the socket holds. Replayed: nothing.
   void Drain(pipeline::AgentPipeline* pipeline);
+  // Live: goes on when the interface was unplugged and is there again. Call a few times per second.
+  void Reconnect() {
+    if (!replayed_) (void)socket_.Reconnect();
+  }
   // Replayed: reads on until the newest sample is at or after t (sensor time), or the log ends. Live: nothing.
   void ReadUntil(TimeNs t, pipeline::AgentPipeline* pipeline);
 

@@ -20,6 +20,10 @@ const char kHelpText[] =
     "  --state-dir DIR       keeps the boot count and the spool of unsent submaps\n"
     "  --can IFACE           SocketCAN interface with the IMU, for example can0\n"
     "  --candump FILE        read the IMU's frames from a `candump -L` log instead\n"
+    "  --imu-ids LIST        the MTi's identifiers of SampleTime, GroupCounter, StatusWord, RateOfTurn, Acceleration, "
+    "in\n"
+    "                        hexadecimal, 3 digits or 8 for 29 bits (005,006,011,032,034; high rate: "
+    "005,006,011,061,062)\n"
     "  --imu-dbc FILE        the IMU is not an Xsens MTi but described by this CAN database\n"
     "  --imu-signals NAMES   its turn rates x,y,z and accelerations x,y,z: six signal names, separated by commas\n"
     "  --lidar MODEL         vlp16, hdl32e, vlp32c, xt32 or os1 (vlp16)\n"
@@ -95,6 +99,7 @@ const char* LidarCalibrationProblem(const Options& options) {
 const char* ImuDescriptionProblem(const Options& options) {
   if ((options.imu_dbc_path == nullptr) != (options.imu_signals == nullptr))
     return "--imu-dbc and --imu-signals go together";
+  if (options.imu_dbc_path != nullptr && options.imu_ids_given) return "--imu-ids is for an MTi, --imu-dbc for others";
   const bool clockless = options.imu_dbc_path != nullptr && options.time_source == TimeSource::kShared;
   return clockless ? "--imu-dbc needs --time receive: such an IMU has no clock of its own" : nullptr;
 }
@@ -104,6 +109,7 @@ enum OptionId : int {
   kStateDir,
   kCan,
   kCandump,
+  kImuIds,
   kImuDbc,
   kImuSignals,
   kLidar,
@@ -124,6 +130,7 @@ constexpr option kOptions[] = {
     {"state-dir", required_argument, nullptr, kStateDir},
     {"can", required_argument, nullptr, kCan},
     {"candump", required_argument, nullptr, kCandump},
+    {"imu-ids", required_argument, nullptr, kImuIds},
     {"imu-dbc", required_argument, nullptr, kImuDbc},
     {"imu-signals", required_argument, nullptr, kImuSignals},
     {"lidar", required_argument, nullptr, kLidar},
@@ -157,6 +164,9 @@ bool Apply(int id, const char* value, Options* options) {
     case kCandump:
       options->candump_path = value;
       return true;
+    case kImuIds:
+      options->imu_ids_given = true;
+      return can::XsensIds::Parse(value, &options->imu_ids) == Status::kOk;
     case kImuDbc:
       options->imu_dbc_path = value;
       return true;

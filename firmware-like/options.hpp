@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/pipeline/agent_pipeline.hpp"
+#include "drivers/can/xsens_ids.hpp"
 
 namespace mapweld::executive {
 
@@ -21,6 +22,8 @@ struct Options {
   int agent_id = 0;
   const char* can_interface = nullptr;  // one of these two
   const char* candump_path = nullptr;
+  can::XsensIds imu_ids;
+  bool imu_ids_given = false;
   const char* imu_dbc_path = nullptr;  // null: an Xsens MTi
   const char* imu_signals = nullptr;   // with imu_dbc_path: six names, see DbcImuCodec
   LidarModel lidar_model = LidarModel::kVlp16;

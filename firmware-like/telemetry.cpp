@@ -55,12 +55,12 @@ void Telemetry::PublishHealth(mapweldlcm::health_t* health) {
   (void)Publish(messages::Kind::kHealth, *health);
 }
 
-std::size_t Telemetry::PublishSubmapChunk(std::int32_t keyframe, std::span<const std::uint8_t> submap,
-                                          std::size_t offset) {
+std::size_t Telemetry::PublishSubmapChunk(std::int32_t epoch, std::int32_t keyframe,
+                                          std::span<const std::uint8_t> submap, std::size_t offset) {
   static_assert(sizeof(chunk_.data) == kChunkBytes);
   const std::size_t n = std::min(kChunkBytes, submap.size() - offset);
   chunk_.agent_id = identity_.agent_id;
-  chunk_.epoch = identity_.epoch;
+  chunk_.epoch = epoch;
   chunk_.keyframe = keyframe;
   chunk_.total_bytes = static_cast<std::int32_t>(submap.size());
   chunk_.offset = static_cast<std::int32_t>(offset);

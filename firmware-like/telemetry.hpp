@@ -30,9 +30,11 @@ class Telemetry {
   std::span<const std::uint8_t> PublishKeyframe(const pipeline::KeyframeOutput& keyframe);
   // health.agent_id and epoch are filled in here.
   void PublishHealth(mapweldlcm::health_t* health);
-  // One piece of an encoded submap, at most kChunkBytes from `offset` on. Gives the payload bytes sent.
+  // One piece of an encoded submap, of this boot or an earlier one, at most kChunkBytes from `offset` on. Gives the
+  // payload bytes sent.
   static constexpr std::size_t kChunkBytes = 1280;
-  std::size_t PublishSubmapChunk(std::int32_t keyframe, std::span<const std::uint8_t> submap, std::size_t offset);
+  std::size_t PublishSubmapChunk(std::int32_t epoch, std::int32_t keyframe, std::span<const std::uint8_t> submap,
+                                 std::size_t offset);
   // A keyframe_t as it was encoded the first time.
   void RepeatKeyframe(std::span<const std::uint8_t> encoded) { Send(messages::Kind::kKeyframe, encoded); }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/place/azimuth.hpp"
+
 namespace mapweld::place {
 namespace {
 
@@ -13,19 +15,10 @@ constexpr std::int32_t kNearEndQ8 = 25 * kQ8;   // ... to here
 constexpr std::int32_t kFarFromQ8 = 20 * kQ8;
 constexpr std::int32_t kFarEndQ8 = 50 * kQ8;
 
-// Azimuth in sectors times 256, 0..kSectors * 256. Own arithmetic, because a library's atan2 may differ between
-// machines. atan(t) ~ t (pi/4 + 0.273 (1 - t)) on 0..1: right to 0.22 degrees, a 25th of a sector.
+// Azimuth in sectors times 256, 0..kSectors * 256.
 std::int32_t AzimuthQ8(const Column& c) {
-  const auto x = static_cast<float>(std::abs(c.x_q8));
-  const auto y = static_cast<float>(std::abs(c.y_q8));
-  const float t = std::min(x, y) / std::max(x, y);
-  constexpr float kEighth = static_cast<float>(kSectors) * kQ8 / 8;  // of a turn
-  constexpr float kBend = 0.273F * kEighth / 0.78539816F;
-  float azimuth = t * (kEighth + kBend * (1.0F - t));
-  if (y > x) azimuth = 2 * kEighth - azimuth;
-  if (c.x_q8 < 0) azimuth = 4 * kEighth - azimuth;
-  if (c.y_q8 < 0) azimuth = 8 * kEighth - azimuth;
-  return static_cast<std::int32_t>(azimuth);
+  return static_cast<std::int32_t>(
+      Azimuth(static_cast<float>(c.x_q8), static_cast<float>(c.y_q8), static_cast<float>(kSectors) * kQ8));
 }
 
 }  // namespace

@@ -79,6 +79,8 @@ Status ColumnGrid::Build(std::span<const submap::SubmapPoint> points, std::size_
     const std::int32_t weight =
         height_q8 >= kFullHeightQ8 ? kQ8 : kLowestWeightQ8 + (kQ8 - kLowestWeightQ8) * height_q8 / kFullHeightQ8;
     cell.weight_q8 += weight;
+    if (height_q8 >= kTallHeightQ8) cell.tall_q8 += weight;
+    if (height_q8 >= kHighHeightQ8) cell.high_q8 += weight;
     cell.x_moment_q16 += weight * ((at.x_q8 + kReachQ8) % kCellQ8);
     cell.y_moment_q16 += weight * ((at.y_q8 + kReachQ8) % kCellQ8);
   }
@@ -115,7 +117,9 @@ Column ColumnGrid::MakeColumn(std::size_t index) const {
   const auto y0 = static_cast<std::int32_t>(index / kSide) * kCellQ8 - kReachQ8;
   Column column{.x_q8 = x0 + cell.x_moment_q16 / cell.weight_q8,
                 .y_q8 = y0 + cell.y_moment_q16 / cell.weight_q8,
-                .weight_q8 = std::min(cell.weight_q8, kMaxWeightQ8)};
+                .weight_q8 = std::min(cell.weight_q8, kMaxWeightQ8),
+                .tall_q8 = std::min(cell.tall_q8, kMaxWeightQ8),
+                .high_q8 = std::min(cell.high_q8, kMaxWeightQ8)};
   const auto x = static_cast<float>(column.x_q8);
   const auto y = static_cast<float>(column.y_q8);
   column.range_q8 = static_cast<std::int32_t>(std::sqrt(x * x + y * y));

@@ -24,6 +24,8 @@ struct Column {
   std::int32_t y_q8 = 0;
   std::int32_t range_q8 = 0;   // from the vehicle, rounded down
   std::int32_t weight_q8 = 0;  // points, each between kLowestWeightQ8 and 1; at most kMaxWeightQ8
+  std::int32_t tall_q8 = 0;    // of them, those at least kTallHeightQ8 over their surroundings
+  std::int32_t high_q8 = 0;    // and those at least kHighHeightQ8
 };
 
 class ColumnGrid {
@@ -32,6 +34,8 @@ class ColumnGrid {
   static constexpr std::int32_t kReachQ8 = 50 * kQ8;        // cells cover |x|, |y| < 50 m
   static constexpr std::int32_t kLowestWeightQ8 = kQ8 / 4;  // of a point that has nothing below it
   static constexpr std::int32_t kFullHeightQ8 = kQ8 / 2;    // a point this high over its surroundings counts in full
+  static constexpr std::int32_t kTallHeightQ8 = kQ8;        // walls, hedges, vehicles: not kerbs
+  static constexpr std::int32_t kHighHeightQ8 = 3 * kQ8;    // houses, trees, poles: not vehicles
   static constexpr std::int32_t kTopHeightQ8 = 8 * kQ8;     // one this high counts no more: not every sensor sees it
   static constexpr std::int32_t kMaxWeightQ8 = 32 * kQ8;    // of a cell
   static constexpr float kMaxCoordinate_m = 1000.0F;
@@ -55,6 +59,8 @@ class ColumnGrid {
     std::int32_t lowest_q8 = kEmptyQ8;         // in this cell
     std::int32_t lowest_around_q8 = kEmptyQ8;  // in this cell and its eight neighbours, once asked for
     std::int32_t weight_q8 = 0;
+    std::int32_t tall_q8 = 0;
+    std::int32_t high_q8 = 0;
     std::int32_t x_moment_q16 = 0;  // sum of weight times the place inside the cell
     std::int32_t y_moment_q16 = 0;
   };
@@ -71,7 +77,7 @@ class ColumnGrid {
   [[nodiscard]] std::int32_t LowestAround(std::size_t index) const;
   [[nodiscard]] Column MakeColumn(std::size_t index) const;
 
-  std::array<Cell, kSide * kSide> cells_;  // 800 kB
+  std::array<Cell, kSide * kSide> cells_;  // 1120 kB
 };
 
 }  // namespace mapweld::place

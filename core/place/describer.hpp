@@ -8,32 +8,40 @@
 #include "core/place/azimuth_profile.hpp"
 #include "core/place/column_grid.hpp"
 #include "core/place/descriptor.hpp"
-#include "core/place/projection_spectrum.hpp"
+#include "core/place/plan_image.hpp"
+#include "core/place/trained_code.hpp"
 #include "core/submap/submap.hpp"
 
 namespace mapweld::place {
 
-// Submap in, place description out. Owns its scratch memory (about 910 kB: keep it in static memory); no heap. The same
+// Submap in, place description out. Owns its scratch memory (about 1.8 MB: keep it in static memory); no heap. The same
 // set of points gives the same bytes, in whatever order they come and on whatever machine.
 //
-// This version is made by hand, without training; docs/descriptor.md has its formulas and what it measures.
-// Cost: two passes over the points, then 128 integer multiply-adds per occupied 0.5 m cell within 35 m. On one busy
-// x86-64 core 1.5 ms for a street of 18000 points, 2.3 ms for 31000, at worst 5 ms for 49152 points in all cells.
+// Cost: two passes over the points, 384 integer multiply-adds per occupied 0.5 m cell within 35 m, 192 transforms of
+// length 128, and the network's 11 million multiply-adds; docs/descriptor.md has the measured times.
 class Describer {
  public:
+  enum class Method {
+    kTrained,   // weights of the compiled model
+    kHandmade,  // without training: for sensors the model has not seen
+  };
   static constexpr std::size_t kMinPoints = 200;
+
+  explicit Describer(Method method = Method::kTrained);
 
   // kBadInput, with *description untouched: fewer than kMinPoints points within reach, points that are not finite or
   // beyond 1 km, or points that all lie in one plane or line. A description that looks valid is never made up.
   Status Describe(const submap::Submap& submap, PlaceDescription* description);
 
  private:
-  void DescribePlace(PlaceDescriptor* descriptor) const;
+  void DescribePlace(PlaceDescriptor* descriptor);
   void DescribeOrientation(OrientationSignature* signature) const;
 
+  Method method_;
   ColumnGrid grid_;
-  ProjectionSpectrum spectrum_;
+  PlanImage image_;
   AzimuthProfile azimuth_;
+  TrainedCode trained_;
 };
 
 }  // namespace mapweld::place

@@ -19,10 +19,10 @@ constexpr auto kDirection = MakeDirectionTable<2 * ProjectionSpectrum::kDirectio
 // Worst case: the strip of 1 m that falls into one cell touches fewer than 500 columns, all of the heaviest weight.
 static_assert(std::int64_t{500} * ColumnGrid::kMaxWeightQ8 * kQ8 < INT32_MAX);
 
-std::int32_t FadedWeight(const Column& column) {
+std::int32_t FadedWeight(const Column& column, std::int32_t weight_q8) {
   const std::int32_t inside = kRimQ8 - column.range_q8;
   if (inside <= 0) return 0;
-  return inside >= kFadeQ8 ? column.weight_q8 : column.weight_q8 * inside / kFadeQ8;
+  return inside >= kFadeQ8 ? weight_q8 : weight_q8 * inside / kFadeQ8;
 }
 
 // (re^2 + im^2)^(3/16), by square roots only because those round the same way everywhere.
@@ -55,8 +55,8 @@ void ProjectionSpectrum::Clear() {
   for (auto& row : packed_) row.fill(0);
 }
 
-void ProjectionSpectrum::Add(const Column& column) {
-  const auto weight = static_cast<std::uint64_t>(FadedWeight(column));
+void ProjectionSpectrum::Add(const Column& column, std::int32_t weight_q8) {
+  const auto weight = static_cast<std::uint64_t>(FadedWeight(column, weight_q8));
   if (weight == 0) return;
   std::array<std::uint32_t, kDirections> along_q8;  // in a loop of its own, which the compiler turns into SIMD
   for (std::size_t d = 0; d < kDirections; ++d) {

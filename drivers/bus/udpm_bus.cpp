@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "drivers/bus/udpm_socket.hpp"
+
 namespace mapweld::bus {
 namespace {
 
@@ -28,26 +30,6 @@ bool HasRoute(int fd, const sockaddr_in& group) {
 }
 
 }  // namespace
-
-Status UdpmBus::OpenReceiver(const UdpmAddress& address) {
-  receive_fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (receive_fd_ < 0) return Status::kIo;
-  const int on = 1;
-  // Other LCM programs on this machine share the port.
-  if (!SetOption(receive_fd_, SOL_SOCKET, SO_REUSEADDR, on)) return Status::kIo;
-  time::RequestReceiveBuffer(receive_fd_, static_cast<int>(address.receive_buffer_bytes));
-  time::EnableReceiveInfo(receive_fd_);
-  // Without this the kernel also hands over groups that other programs on this machine joined on the same port.
-  const int off = 0;
-  (void)SetOption(receive_fd_, IPPROTO_IP, IP_MULTICAST_ALL, off);
-  sockaddr_in any = group_;
-  any.sin_addr.s_addr = htonl(INADDR_ANY);
-  if (::bind(receive_fd_, AsSockaddr(&any), sizeof(any)) != 0) return Status::kIo;
-  ip_mreq membership{};
-  membership.imr_multiaddr = group_.sin_addr;
-  membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  return SetOption(receive_fd_, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership) ? Status::kOk : Status::kIo;
-}
 
 Status UdpmBus::OpenSender(const UdpmAddress& address) {
   send_fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -70,8 +52,8 @@ Status UdpmBus::Open(std::string_view url, std::string_view channel_prefix) {
   group_.sin_family = AF_INET;
   group_.sin_port = htons(address.port);
   group_.sin_addr.s_addr = htonl(address.group_ipv4);
-  Status status = OpenReceiver(address);
-  if (status == Status::kOk) status = OpenSender(address);
+  receive_fd_ = OpenUdpmReceiver(address);
+  const Status status = receive_fd_ >= 0 ? OpenSender(address) : Status::kIo;
   if (status != Status::kOk) {
     const int why = errno;
     Close();

@@ -73,7 +73,6 @@ class UdpmBus {
   [[nodiscard]] std::uint64_t Rejected() const;
 
  private:
-  Status OpenReceiver(const UdpmAddress& address);
   Status OpenSender(const UdpmAddress& address);
   void Handle(std::span<const std::uint8_t> datagram, const Sender& sender, const MessageSink& sink);
   void Deliver(const BusMessage& message, const MessageSink& sink);

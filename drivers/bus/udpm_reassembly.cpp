@@ -20,12 +20,18 @@ UdpmReassembly::Slot& UdpmReassembly::FindOrBegin(const ParsedDatagram& datagram
   oldest->used = true;
   oldest->sender = sender;
   oldest->sequence = datagram.sequence;
-  oldest->begun = begun_++;
+  oldest->begun = counters_.begun++;
   oldest->message_bytes = datagram.message_bytes;
   oldest->fragments = datagram.fragments;
   oldest->present = 0;
   oldest->channel_bytes = 0;
   return *oldest;
+}
+
+Status UdpmReassembly::Drop(Slot* slot) {
+  slot->used = false;
+  ++counters_.contradicted;
+  return Status::kBadInput;
 }
 
 bool UdpmReassembly::SameAsBefore(const Slot& slot, const ParsedDatagram& datagram) {
@@ -52,10 +58,7 @@ Status UdpmReassembly::Push(const ParsedDatagram& datagram, const Sender& sender
   if (datagram.message_bytes > kSlotBytes || datagram.fragments > kMaxFragments) return Status::kBadInput;
   Slot& slot = FindOrBegin(datagram, sender);
   *refusal = Refusal::kContradicts;
-  if (slot.message_bytes != datagram.message_bytes || slot.fragments != datagram.fragments) {
-    slot.used = false;
-    return Status::kBadInput;
-  }
+  if (slot.message_bytes != datagram.message_bytes || slot.fragments != datagram.fragments) return Drop(&slot);
   const std::uint64_t bit = std::uint64_t{1} << datagram.fragment_index;
   if ((slot.present & bit) != 0) {
     if (SameAsBefore(slot, datagram)) {
@@ -63,8 +66,7 @@ Status UdpmReassembly::Push(const ParsedDatagram& datagram, const Sender& sender
       *refusal = Refusal::kNone;
       return Status::kNotReady;
     }
-    slot.used = false;
-    return Status::kBadInput;
+    return Drop(&slot);
   }
   slot.present |= bit;
   slot.pieces[datagram.fragment_index] = {.offset = static_cast<std::uint16_t>(datagram.offset),
@@ -77,11 +79,11 @@ Status UdpmReassembly::Push(const ParsedDatagram& datagram, const Sender& sender
   const std::uint64_t all = ~std::uint64_t{0} >> (64U - slot.fragments);
   *refusal = Refusal::kNone;
   if (slot.present != all) return Status::kNotReady;
-  slot.used = false;
   if (!CoversExactly(slot)) {
     *refusal = Refusal::kContradicts;
-    return Status::kBadInput;
+    return Drop(&slot);
   }
+  slot.used = false;
   ++counters_.completed;
   message->channel = {slot.channel.data(), slot.channel_bytes};
   message->payload = std::span<const std::uint8_t>(slot.data).first(slot.message_bytes);

@@ -5,6 +5,7 @@
 // and little more. Cost per fragment: its copy, and one pass over at most 64 pieces at the end.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,9 +33,11 @@ class UdpmReassembly {
   static constexpr std::size_t kMaxFragments = 64;
 
   struct Counters {
+    std::uint64_t begun = 0;  // messages; each is in a slot, or one of the next three
     std::uint64_t completed = 0;
-    std::uint64_t repeated = 0;  // fragments ignored
-    std::uint64_t evicted = 0;   // messages that never completed
+    std::uint64_t evicted = 0;       // gave way to a newer one
+    std::uint64_t contradicted = 0;  // dropped because of a fragment that did not fit
+    std::uint64_t repeated = 0;      // fragments ignored
   };
 
   // `datagram` must be a fragment accepted by ParseDatagram. kOk: *message is complete and valid until the next call;
@@ -42,6 +45,9 @@ class UdpmReassembly {
   Status Push(const ParsedDatagram& datagram, const Sender& sender, BusMessage* message, Refusal* refusal);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] std::size_t slots_in_use() const {
+    return static_cast<std::size_t>(std::ranges::count(slots_, true, &Slot::used));
+  }
 
  private:
   struct Piece {
@@ -67,8 +73,9 @@ class UdpmReassembly {
   static bool SameAsBefore(const Slot& slot, const ParsedDatagram& datagram);
   static bool CoversExactly(const Slot& slot);
 
+  Status Drop(Slot* slot);
+
   std::array<Slot, kSlots> slots_{};
-  std::uint64_t begun_ = 0;
   Counters counters_;
 };
 

@@ -27,25 +27,24 @@ CanFrame FromKernel(const can_frame& raw) {
 
 }  // namespace
 
-Status SocketCanPort::SetFilters(std::span<const std::uint32_t> wanted_ids) {
-  if (wanted_ids.size() > kMaxFilters) return Status::kOutOfRange;
+Status SocketCanPort::SetFilters() {
   const can_err_mask_t errors = CAN_ERR_MASK;
   if (::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) != 0) return Status::kIo;
-  if (wanted_ids.empty()) return Status::kOk;
+  if (wanted_ids_.empty()) return Status::kOk;
   std::array<can_filter, kMaxFilters> filters{};
-  for (std::size_t i = 0; i < wanted_ids.size(); ++i) {
+  for (std::size_t i = 0; i < wanted_ids_.size(); ++i) {
     // The flag bits in the mask keep remote frames, and frames of the other length of identifier, out.
-    const canid_t bits = (wanted_ids[i] & CAN_EFF_FLAG) != 0 ? CAN_EFF_MASK : CAN_SFF_MASK;
-    filters[i] = {.can_id = wanted_ids[i], .can_mask = bits | CAN_EFF_FLAG | CAN_RTR_FLAG};
+    const canid_t bits = (wanted_ids_[i] & CAN_EFF_FLAG) != 0 ? CAN_EFF_MASK : CAN_SFF_MASK;
+    filters[i] = {.can_id = wanted_ids_[i], .can_mask = bits | CAN_EFF_FLAG | CAN_RTR_FLAG};
   }
-  const auto bytes = static_cast<socklen_t>(wanted_ids.size() * sizeof(can_filter));
+  const auto bytes = static_cast<socklen_t>(wanted_ids_.size() * sizeof(can_filter));
   return ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), bytes) == 0 ? Status::kOk : Status::kIo;
 }
 
-Status SocketCanPort::Bind(const char* interface) {
+Status SocketCanPort::Bind() {
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  const unsigned index = ::if_nametoindex(interface);
+  const unsigned index = ::if_nametoindex(interface_.data());
   if (index == 0) return Status::kIo;
   address.can_ifindex = static_cast<int>(index);
   return ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ? Status::kOk : Status::kIo;
@@ -53,15 +52,19 @@ Status SocketCanPort::Bind(const char* interface) {
 
 Status SocketCanPort::Open(const char* interface, std::span<const std::uint32_t> wanted_ids) {
   Close();
-  if (std::strlen(interface) >= IFNAMSIZ) return Status::kOutOfRange;
+  if (std::strlen(interface) >= interface_.size() || wanted_ids.size() > kMaxFilters) return Status::kOutOfRange;
+  interface_ = {};
+  std::copy_n(interface, std::strlen(interface), interface_.begin());
+  wanted_ids_.clear();
+  for (const std::uint32_t id : wanted_ids) (void)wanted_ids_.TryPush(id);
   fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
   if (fd_ < 0) return Status::kIo;
   // Filters before the bind, so that nothing else ever enters the buffer.
-  Status status = SetFilters(wanted_ids);
+  Status status = SetFilters();
   if (status == Status::kOk) {
     time::RequestReceiveBuffer(fd_, kReceiveBufferBytes);
     time::EnableReceiveInfo(fd_);
-    status = Bind(interface);
+    status = Bind();
   }
   if (status != Status::kOk) {
     const int why = errno;
@@ -83,8 +86,17 @@ Status SocketCanPort::Adopt(int fd) {
 void SocketCanPort::Close() {
   if (fd_ >= 0) (void)::close(fd_);
   fd_ = -1;
-  gap_ = false;
+  unplugged_ = gap_ = false;
   drops_ = {};
+}
+
+Status SocketCanPort::Reconnect() {
+  if (!unplugged_) return Status::kOk;
+  // The kernel forgot the filters with the interface; without them everything on the bus would come in.
+  if (const Status status = SetFilters(); status != Status::kOk) return status;
+  if (Bind() != Status::kOk) return errno == ENODEV || errno == ENXIO ? Status::kNotReady : Status::kIo;
+  unplugged_ = false;
+  return Status::kOk;
 }
 
 void SocketCanPort::CountErrorFrame(std::uint32_t error_class) {
@@ -111,6 +123,11 @@ Status SocketCanPort::Receive(std::span<CanFrame> out, std::size_t* n) {
   if (got < 0) {
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return Status::kOk;
     gap_ = true;
+    if (errno == ENODEV) {
+      unplugged_ = true;
+      ++counters_.unplugged;
+      return Status::kNotReady;
+    }
     if (errno != ENETDOWN) return Status::kIo;
     ++counters_.interface_down;
     return Status::kNotReady;

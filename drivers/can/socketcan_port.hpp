@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A raw SocketCAN socket: kernel filter on the wanted identifiers, batches by recvmmsg, kernel receive stamps, losses
-// in the socket's buffer counted exactly. The interface may go down and up again under it. Owns 64 frames and their
-// control buffers, about 13 KiB. No heap.
+// in the socket's buffer counted exactly. The interface may go down and up again under it, and be unplugged and plugged
+// in again. Owns 64 frames and their control buffers, about 13 KiB. No heap.
 #pragma once
 
 #include <linux/can.h>
+#include <net/if.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base/fixed_vector.hpp"
 #include "drivers/can/can_port.hpp"
 #include "drivers/time/receive_info.hpp"
 
@@ -31,6 +33,7 @@ class SocketCanPort final : public CanPort {
     std::uint64_t wrong_size = 0;      // not a classic CAN frame: dropped here
     std::uint64_t kernel_drops = 0;    // lost in the socket's buffer
     std::uint64_t interface_down = 0;  // times the kernel said so
+    std::uint64_t unplugged = 0;       // times the interface ceased to exist
   };
 
   SocketCanPort() = default;
@@ -40,6 +43,11 @@ class SocketCanPort final : public CanPort {
   // errno when the kernel has no CAN, no such interface or refuses; kOutOfRange for a name that is too long or more
   // than kMaxFilters ids.
   Status Open(const char* interface, std::span<const std::uint32_t> wanted_ids);
+
+  // After the interface ceased to exist: looks for one of the same name and goes on with it, by the same descriptor.
+  // Costs next to nothing otherwise; call a few times per second, because a lost socket gives no more events. kOk:
+  // there was nothing to do, or it is done; kNotReady: there is no such interface yet; kIo with errno.
+  Status Reconnect();
 
   // Takes over an open descriptor whose datagrams are struct can_frame (a socketpair in tests). Made non-blocking.
   Status Adopt(int fd);
@@ -51,11 +59,14 @@ class SocketCanPort final : public CanPort {
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
-  Status Bind(const char* interface);
-  Status SetFilters(std::span<const std::uint32_t> wanted_ids);
+  Status Bind();
+  Status SetFilters();
   void CountErrorFrame(std::uint32_t error_class);
 
   int fd_ = -1;
+  bool unplugged_ = false;
+  std::array<char, IF_NAMESIZE> interface_{};
+  FixedVector<std::uint32_t, kMaxFilters> wanted_ids_;
   bool gap_ = false;  // carried to the next delivered frame
   Counters counters_;
   time::DropCounter drops_;

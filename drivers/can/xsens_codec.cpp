@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/base/byte_io.hpp"
 #include "drivers/can/xsens_table.hpp"
@@ -13,10 +14,9 @@ namespace {
 constexpr double kGyroLsb = 1.0 / 512.0;   // rad/s
 constexpr double kAccelLsb = 1.0 / 256.0;  // m/s^2
 
-constexpr time::SensorClockOptions ClockFor(const XsensOptions& options) {
-  time::SensorClockOptions clock =
-      options.sample_time_unit == SampleTimeUnit::k1us ? time::kXsens1usClock : time::kXsens100usClock;
-  clock.mode = options.clock_mode;
+constexpr time::SensorClockOptions ClockFor(SampleTimeUnit unit, time::ClockMode mode) {
+  time::SensorClockOptions clock = unit == SampleTimeUnit::k1us ? time::kXsens1usClock : time::kXsens100usClock;
+  clock.mode = mode;
   return clock;
 }
 
@@ -55,7 +55,10 @@ Eigen::Vector3d Scaled(const std::array<std::int16_t, 3>& axes, double lsb) {
 }  // namespace
 
 XsensCodec::XsensCodec(const XsensOptions& options)
-    : options_(options), tick_ns_(ClockFor(options).tick_ns), clock_(ClockFor(options)) {
+    : options_(options),
+      start_(options.sample_time_unit, options.inertial_order),
+      tick_ns_(ClockFor(options.sample_time_unit, options.clock_mode).tick_ns),
+      clock_(ClockFor(options.sample_time_unit, options.clock_mode)) {
   group_.done = true;  // until a SampleTime opens one
 }
 
@@ -67,25 +70,35 @@ std::uint64_t XsensCodec::Rejected() const {
 
 Status XsensCodec::Check(const CanFrame& frame) {
   std::uint64_t* cause = nullptr;
-  const XsensMessage* message = FindXsensMessage(frame.id);
+  const XsensField field = options_.ids.FieldOf(frame);
+  const XsensMessage* message = frame.extended ? nullptr : FindXsensMessage(frame.id);
+  const bool wanted = field != XsensField::kNone;
   if (frame.error) {
     cause = &counters_.error_frames;
-  } else if (frame.extended) {
+  } else if (frame.extended && !wanted) {
     cause = &counters_.extended;
   } else if (frame.remote) {
     cause = &counters_.remote;
-  } else if (message == nullptr) {
+  } else if (!wanted && message == nullptr) {
     cause = &counters_.unknown_id;
-  } else if (frame.dlc != message->dlc) {
+  } else if (frame.dlc != (wanted ? DlcOf(field) : message->dlc)) {
     cause = &counters_.wrong_dlc;
   }
   if (cause != nullptr) {
     ++*cause;
     return Status::kBadInput;
   }
-  if (message->field != XsensField::kNone) return Status::kOk;
+  if (wanted) return Status::kOk;
   ++counters_.unused;
   return Status::kEmpty;
+}
+
+// What the frame holds, as far as that is known.
+XsensField XsensCodec::FieldOf(const CanFrame& frame) const {
+  const XsensField field = options_.ids.FieldOf(frame);
+  if (!start_.swapped()) return field;
+  if (field == XsensField::kRateOfTurn) return XsensField::kAcceleration;
+  return field == XsensField::kAcceleration ? XsensField::kRateOfTurn : field;
 }
 
 void XsensCodec::Tear() {
@@ -95,7 +108,7 @@ void XsensCodec::Tear() {
 }
 
 Status XsensCodec::Store(const CanFrame& frame) {
-  const XsensField field = FindXsensMessage(frame.id)->field;
+  const XsensField field = FieldOf(frame);
   const std::uint8_t part = PartOf(field);
   if (field == XsensField::kSampleTime) {
     Tear();  // what is still open did not complete
@@ -127,28 +140,23 @@ Status XsensCodec::Store(const CanFrame& frame) {
   return Status::kOutOfRange;
 }
 
-// One more complete group; true once the unit is known.
-bool XsensCodec::DetectUnit() {
-  if (options_.sample_time_unit != SampleTimeUnit::kDetect) return true;
-  const std::uint32_t ticks = group_.sample_time_ticks - detect_ticks_;
-  const bool successor = static_cast<std::uint16_t>(group_.counter - detect_counter_) == 1;
-  detect_ticks_ = group_.sample_time_ticks;
-  detect_counter_ = group_.counter;
-  const bool speaks_for_1us = ticks > kMost100usTicks;
-  agreeing_ = successor && (agreeing_ == 0 || speaks_for_1us == spoke_for_1us_) ? agreeing_ + 1 : 0;
-  spoke_for_1us_ = speaks_for_1us;
-  if (agreeing_ < kDetectGroups) return false;
-  options_.sample_time_unit = speaks_for_1us ? SampleTimeUnit::k1us : SampleTimeUnit::k100us;
-  tick_ns_ = ClockFor(options_).tick_ns;
-  clock_ = time::SensorClock(ClockFor(options_));
-  return true;
+void XsensCodec::UseUnit() {
+  started_ = true;
+  const time::SensorClockOptions clock = ClockFor(start_.unit(), options_.clock_mode);
+  tick_ns_ = clock.tick_ns;
+  if (options_.sample_time_unit == SampleTimeUnit::kDetect) clock_ = time::SensorClock(clock);
 }
 
 Status XsensCodec::Finish(sensor::ImuSample* sample) {
-  if (!DetectUnit()) {
-    group_.done = true;
-    ++counters_.undecided;
-    return Status::kNotReady;
+  if (!started_) {
+    if (!start_.Push(group_)) {
+      group_.done = true;
+      ++counters_.undecided;
+      return Status::kNotReady;
+    }
+    UseUnit();
+    const bool stored_as_named = options_.inertial_order == InertialOrder::kDetect;
+    if (start_.swapped() && stored_as_named) std::swap(group_.gyro, group_.accel);
   }
   const XsensContinuity::Verdict verdict = continuity_.Judge(group_, tick_ns_);
   if (verdict == XsensContinuity::Verdict::kTorn) {
@@ -191,7 +199,7 @@ Status XsensCodec::Push(const CanFrame& frame, sensor::ImuSample* sample) {
   if (frame.gap) Tear();
   if (const Status status = Check(frame); status != Status::kOk) return status;
   Status released = Status::kNotReady;
-  if (FindXsensMessage(frame.id)->field == XsensField::kSampleTime) released = ReleaseHeld(frame, sample);
+  if (options_.ids.FieldOf(frame) == XsensField::kSampleTime) released = ReleaseHeld(frame, sample);
   if (const Status status = Store(frame); status != Status::kOk) return status;
   if ((group_.parts & XsensGroup::kNeeded) != XsensGroup::kNeeded) return released;
   return Finish(sample);

@@ -10,18 +10,16 @@
 #include "core/sensor/imu_sample.hpp"
 #include "drivers/can/can_frame.hpp"
 #include "drivers/can/xsens_group.hpp"
+#include "drivers/can/xsens_ids.hpp"
+#include "drivers/can/xsens_start.hpp"
 #include "drivers/time/sensor_clock.hpp"
 
 namespace mapweld::can {
 
-// The vendor's pages say 100 us, the 2019 manual and the DBC file 1 us; it depends on the firmware. kDetect tells them
-// apart by the ticks from one group to the next: an MTi sends at most 400 groups per second and odometry needs at least
-// 5, which are 25 to 2000 ticks of 100 us or 2500 to 200 000 of 1 us. No clock is asked, so a replay at any speed gives
-// the same answer.
-enum class SampleTimeUnit : std::uint8_t { k100us, k1us, kDetect };
-
 struct XsensOptions {
+  XsensIds ids{};
   SampleTimeUnit sample_time_unit = SampleTimeUnit::k100us;
+  InertialOrder inertial_order = InertialOrder::kAsNamed;
   time::ClockMode clock_mode = time::ClockMode::kShared;
 };
 
@@ -30,14 +28,13 @@ class XsensCodec {
   // The sensor measures 2000 deg/s and 10 g; what lies outside is a fault, not a motion.
   static constexpr double kMaxGyroRadS = 35.0;
   static constexpr double kMaxAccelMs2 = 100.0;
-  static constexpr int kDetectGroups = 8;                 // that agree, one after the other
-  static constexpr std::uint32_t kMost100usTicks = 2200;  // per group
+  static constexpr int kDetectGroups = XsensStart::kGroups;  // that give no sample, when something is to be detected
 
   struct Counters {
     std::uint64_t frames = 0;
     std::uint64_t samples = 0;
     std::uint64_t clipped = 0;    // samples, delivered and marked
-    std::uint64_t undecided = 0;  // samples before the unit was known
+    std::uint64_t undecided = 0;  // samples before unit and order were known
     std::uint64_t unused = 0;     // known messages that odometry does not need
     // refused frames
     std::uint64_t error_frames = 0;
@@ -60,6 +57,8 @@ class XsensCodec {
   Status Push(const CanFrame& frame, sensor::ImuSample* sample);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
+  // What was told or concluded: see XsensStart.
+  [[nodiscard]] const XsensStart& start() const { return start_; }
   // Frames and samples refused, all causes together.
   [[nodiscard]] std::uint64_t Rejected() const;
   time::SensorClock& clock() { return clock_; }
@@ -67,22 +66,21 @@ class XsensCodec {
 
  private:
   Status Check(const CanFrame& frame);
+  [[nodiscard]] XsensField FieldOf(const CanFrame& frame) const;
   Status Store(const CanFrame& frame);
   Status Finish(sensor::ImuSample* sample);
   Status Emit(sensor::ImuSample* sample);
   Status ReleaseHeld(const CanFrame& frame, sensor::ImuSample* sample);
   void Tear();
-  bool DetectUnit();
+  void UseUnit();
 
   XsensOptions options_;
+  XsensStart start_;
+  bool started_ = false;  // nothing is left to detect
   std::int64_t tick_ns_;
   time::SensorClock clock_;
   XsensGroup group_;
   XsensContinuity continuity_;
-  int agreeing_ = 0;  // groups since the last that spoke for the other unit
-  bool spoke_for_1us_ = false;
-  std::uint32_t detect_ticks_ = 0;
-  std::uint16_t detect_counter_ = 0;
   bool held_ = false;  // group_ is complete but late: see XsensContinuity
   bool emitted_ = false;
   TimeNs last_t_;

@@ -41,7 +41,7 @@ inline constexpr std::array kXsensMessages{
     XsensMessage{0x041, 6, XsensField::kNone},          // MagneticField
     XsensMessage{0x051, 2, XsensField::kNone},          // Temperature
     XsensMessage{0x052, 4, XsensField::kNone},          // BaroPressure
-    XsensMessage{0x061, 6, XsensField::kNone},          // RateOfTurnHR or AccelerationHR: the sources disagree
+    XsensMessage{0x061, 6, XsensField::kNone},          // RateOfTurnHR or AccelerationHR: see XsensStart
     XsensMessage{0x062, 6, XsensField::kNone},          // the other one
     XsensMessage{0x071, 8, XsensField::kNone},          // LatLon
     XsensMessage{0x072, 4, XsensField::kNone},          // AltitudeEllipsoid
@@ -56,6 +56,14 @@ static_assert(std::ranges::is_sorted(kXsensMessages, {}, &XsensMessage::id));
 
 // For the kernel's filter: what the codec makes use of.
 inline constexpr std::array<std::uint32_t, 5> kXsensWantedIds{0x005, 0x006, 0x011, 0x032, 0x034};
+
+// Bytes of a message that odometry needs, whatever its identifier.
+constexpr std::uint8_t DlcOf(XsensField field) {
+  for (const XsensMessage& message : kXsensMessages) {
+    if (message.field == field) return message.dlc;
+  }
+  return 0;
+}
 
 // StatusWord: clipping of the accelerometer and gyroscope axes. Bits 14 to 16 tell of the magnetometer, which is not
 // used.

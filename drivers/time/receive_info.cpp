@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/time/receive_info.hpp"
 
+#include <linux/net_tstamp.h>
+
 #include <cstring>
 #include <ctime>
 
@@ -8,7 +10,9 @@ namespace mapweld::time {
 
 void EnableReceiveInfo(int fd) {
   const int on = 1;
-  (void)::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
+  // Unlike SO_TIMESTAMPNS, which then gives the time of reading, this gives no stamp to a datagram that has none.
+  const unsigned stamps = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
+  (void)::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPING, &stamps, sizeof(stamps));
   (void)::setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
 }
 
@@ -32,8 +36,8 @@ ReceiveInfo ReadReceiveInfo(const msghdr& header, const ClockPair& now) {
   msghdr copy = header;
   for (cmsghdr* c = CMSG_FIRSTHDR(&copy); c != nullptr; c = CMSG_NXTHDR(&copy, c)) {
     if (c->cmsg_level != SOL_SOCKET) continue;
-    if (c->cmsg_type == SCM_TIMESTAMPNS && c->cmsg_len >= CMSG_LEN(sizeof(timespec))) {
-      timespec stamp{};
+    if (c->cmsg_type == SCM_TIMESTAMPING && c->cmsg_len >= CMSG_LEN(sizeof(timespec))) {
+      timespec stamp{};  // the first of three is the kernel's own, zero when missing
       std::memcpy(&stamp, CMSG_DATA(c), sizeof(stamp));
       const TimeNs realtime{static_cast<std::int64_t>(stamp.tv_sec) * 1'000'000'000 +
                             static_cast<std::int64_t>(stamp.tv_nsec)};

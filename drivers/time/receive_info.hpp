@@ -27,8 +27,8 @@ struct ReceiveInfo {
 // Older than this when read, a stamp is taken for a step of the wall clock.
 inline constexpr DurationNs kOldestStamp = Milliseconds(2000);
 
-// Asks for stamps (SO_TIMESTAMPNS) and the drop counter (SO_RXQ_OVFL). Either may be refused (a socketpair, an
-// emulator); the receiver then works without it.
+// Asks for stamps (SO_TIMESTAMPING, software) and the drop counter (SO_RXQ_OVFL). Either may be refused (a socketpair,
+// an emulator); the receiver then works without it.
 void EnableReceiveInfo(int fd);
 
 // A receive buffer of the wanted size: beyond the system's limit when permitted, else as large as the limit allows.

@@ -11,7 +11,8 @@ CORE = {
     "scan": {"base", "config", "geom", "sensor"},
     "submap": {"base", "config", "geom", "sensor"},
     "lio": {"base", "config", "geom", "sensor", "scan"},
-    "place": {"base", "config", "geom", "submap"},
+    "nn": {"base"},
+    "place": {"base", "config", "geom", "submap", "nn"},
     "correct": {"base", "config", "geom"},
     "pipeline": {"base", "config", "geom", "sensor", "scan", "submap", "lio", "place", "correct"},
 }

@@ -91,12 +91,15 @@ class Side {
 // Carries datagrams between two networks, and loses, repeats and delays some.
 class Relay {
  public:
-  Relay(std::uint16_t a, std::uint16_t b, double loss, std::uint32_t seed) : loss_(loss), random_(seed), a_(a), b_(b) {}
+  Relay(std::uint16_t a, std::uint16_t b, double loss, std::uint32_t seed)
+      : loss_(loss), whole_loss_(loss), random_(seed), a_(a), b_(b) {}
 
   void Step() {
     Carry(a_, b_);
     Carry(b_, a_);
   }
+  // The two networks no longer reach each other, or again.
+  void Cut(bool cut) { loss_ = cut ? 1 : whole_loss_; }
   [[nodiscard]] bool good() const { return a_.good() && b_.good(); }
   [[nodiscard]] int carried() const { return carried_; }
   [[nodiscard]] int lost() const { return lost_; }
@@ -123,6 +126,7 @@ class Relay {
   }
 
   double loss_;
+  double whole_loss_;
   std::mt19937 random_;
   Side a_;
   Side b_;
@@ -138,9 +142,10 @@ std::string Url(std::uint16_t port) {
 // Keyframes from nowhere, published and spooled as the agent does it.
 class SmallAgent {
  public:
-  explicit SmallAgent(const std::string& url) {
+  SmallAgent(const std::string& url, const std::string& state_directory, std::int32_t epoch)
+      : telemetry_({.agent_id = 3, .epoch = epoch}, bus_.get()) {
     good_ = bus_->Open(url, "MW.3.") == Status::kOk &&
-            spool_->Open(directory_.File("spool").c_str(), 8 << 20, 1) == Status::kOk;
+            spool_->Open((state_directory + "/spool").c_str(), 8 << 20) == Status::kOk;
     submap_->points.clear();
     for (int x = 0; x < 40; ++x) {
       for (int y = 0; y < 40; ++y) {
@@ -161,8 +166,9 @@ class SmallAgent {
     keyframe.place.descriptor.scale = 0.01F;
     keyframe.encoded = encoded_;
     const auto message = telemetry_.PublishKeyframe(keyframe);
-    (void)spool_->Append(static_cast<std::uint8_t>(executive::RecordKind::kKeyframe), keyframe.index, message);
-    (void)spool_->Append(static_cast<std::uint8_t>(executive::RecordKind::kSubmap), keyframe.index, encoded_);
+    const std::int32_t epoch = telemetry_.identity().epoch;
+    (void)spool_->Append({epoch, static_cast<std::uint8_t>(executive::RecordKind::kKeyframe), keyframe.index}, message);
+    (void)spool_->Append({epoch, static_cast<std::uint8_t>(executive::RecordKind::kSubmap), keyframe.index}, encoded_);
   }
   void PublishHealth(bool ended) {
     mapweldlcm::health_t health{};
@@ -182,15 +188,15 @@ class SmallAgent {
     (void)bus_->Receive({take, this});
     (void)answers_->Step(time::MonotonicNow());
   }
+  void Remind() { answers_->RemindOfEarlierDrives(); }
   [[nodiscard]] bool good() const { return good_; }
   [[nodiscard]] std::size_t submap_bytes() const { return encoded_.size(); }
 
  private:
   bool good_ = false;
-  test::TemporaryDirectory directory_;
   std::unique_ptr<bus::UdpmBus> bus_ = std::make_unique<bus::UdpmBus>();
   std::unique_ptr<spool::RecordSpool> spool_ = std::make_unique<spool::RecordSpool>();
-  executive::Telemetry telemetry_{{.agent_id = 3, .epoch = 1}, bus_.get()};
+  executive::Telemetry telemetry_;
   std::unique_ptr<executive::AnswerQueue> answers_ =
       std::make_unique<executive::AnswerQueue>(1'000'000, spool_.get(), &telemetry_);
   std::unique_ptr<submap::Submap> submap_ = std::make_unique<submap::Submap>();
@@ -207,13 +213,16 @@ TEST_P(LossyNetwork, BringsEveryKeyframeAndEveryWantedSubmap) {
   const std::vector<std::int32_t> wanted{0, 17, 100, 200, 299};
   const auto port = static_cast<std::uint16_t>(20'000 + ::getpid() % 20'000);
   const auto other_port = static_cast<std::uint16_t>(port + 20'001);
-  SmallAgent agent(Url(port));
+  const test::TemporaryDirectory state;
+  SmallAgent agent(Url(port), state.path().string(), 1);
   Relay relay(port, other_port, GetParam() / 100.0, 42);
   if (!agent.good() || !relay.good()) GTEST_SKIP() << "no multicast on this machine: " << std::strerror(errno);
   serve::FleetLink host(Url(other_port));
   serve::Requester requester(&host);
   const serve::DriveId id{3, 1};
-  requester.Want(id, wanted);
+  std::vector<serve::Requester::Submap> submaps;
+  for (const std::int32_t keyframe : wanted) submaps.push_back({id, keyframe});
+  requester.Want(submaps);
 
   const auto complete = [&] {
     return host.WithStore([&](const serve::FleetStore& store) { return store.IsComplete(id); }) &&
@@ -251,6 +260,130 @@ TEST_P(LossyNetwork, BringsEveryKeyframeAndEveryWantedSubmap) {
         agent.submap_bytes(), static_cast<unsigned long long>(store.counters().repeated_keyframes));
   });
   EXPECT_EQ(host.refused(), 0U);
+}
+
+// The agent drives on while nobody hears it, and the host is killed and started again in that time. When the network
+// heals, everything comes that was not there, and nothing comes twice that was on the disk.
+TEST(PartitionedNetwork, HealsWithEverythingFromTheTimeApart) {
+  using Clock = std::chrono::steady_clock;
+  using namespace std::chrono_literals;
+  constexpr std::int32_t kKeyframes = 200;
+  const auto port = static_cast<std::uint16_t>(20'000 + ::getpid() % 20'000);
+  const auto other_port = static_cast<std::uint16_t>(port + 20'001);
+  const test::TemporaryDirectory directory;
+  SmallAgent agent(Url(port));
+  Relay relay(port, other_port, 0.1, 7);
+  if (!agent.good() || !relay.good()) GTEST_SKIP() << "no multicast on this machine: " << std::strerror(errno);
+  const serve::DriveId id{3, 1};
+  auto city = std::make_unique<store::CityStore>(directory.File("city.db"));
+  auto host = std::make_unique<serve::FleetLink>(Url(other_port), city.get());
+  auto requester = std::make_unique<serve::Requester>(host.get());
+  std::int32_t published = 0;
+  std::size_t kept = 0;  // on the disk when the host was killed
+  auto next = Clock::now();
+  const auto deadline = Clock::now() + 60s;
+  const auto complete = [&] {
+    return published == kKeyframes &&
+           host->WithStore([&](const serve::FleetStore& store) { return store.IsComplete(id); });
+  };
+  while (Clock::now() < deadline && !complete()) {
+    if (Clock::now() >= next) {
+      next += 10ms;
+      if (published < kKeyframes) {
+        agent.PublishKeyframe();
+        ++published;
+        if (published == 50) relay.Cut(true);
+        if (published == 150) {
+          requester.reset();
+          host.reset();
+          city = nullptr;
+          city = std::make_unique<store::CityStore>(directory.File("city.db"));
+          kept = city->Keyframes(1).size();
+          host = std::make_unique<serve::FleetLink>(Url(other_port), city.get());
+          requester = std::make_unique<serve::Requester>(host.get());
+          relay.Cut(false);
+        }
+      }
+      agent.PublishHealth(published == kKeyframes);
+    }
+    agent.Step();
+    relay.Step();
+    requester->Step(Clock::now());
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(complete());
+  EXPECT_GE(kept, 10U);
+  EXPECT_LE(kept, 50U);
+  host->WithStore([&](const serve::FleetStore& store) {
+    ASSERT_EQ(store.Drives().drives.size(), 1U);
+    EXPECT_EQ(store.Drives().drives[0].keyframes.size(), static_cast<std::size_t>(kKeyframes));
+  });
+  host.reset();
+  EXPECT_EQ(city->Keyframes(1).size(), static_cast<std::size_t>(kKeyframes));
+}
+
+// The power fails in the middle of the drive, while the network is away: the host has heard neither the last keyframes
+// of the first drive nor how many there were. By the end it has both drives whole.
+TEST_P(LossyNetwork, BringsTheKeyframesOfTheDriveBeforeAReboot) {
+  using Clock = std::chrono::steady_clock;
+  using namespace std::chrono_literals;
+  constexpr std::int32_t kKeyframes = 100;
+  const std::vector<std::int32_t> wanted{0, 50, 99};
+  const auto port = static_cast<std::uint16_t>(20'000 + ::getpid() % 20'000);
+  const auto other_port = static_cast<std::uint16_t>(port + 20'001);
+  const test::TemporaryDirectory state;
+  auto agent = std::make_unique<SmallAgent>(Url(port), state.path().string(), 1);
+  auto relay = std::make_unique<Relay>(port, other_port, GetParam() / 100.0, 43);
+  if (!agent->good() || !relay->good()) GTEST_SKIP() << "no multicast on this machine: " << std::strerror(errno);
+  serve::FleetLink host(Url(other_port));
+  serve::Requester requester(&host);
+  const serve::DriveId before{3, 1};
+  const serve::DriveId after{3, 2};
+  requester.Want(before, wanted);
+
+  const auto keyframes = [&](const serve::DriveId& id) {
+    return host.WithStore([&](const serve::FleetStore& store) {
+      const auto fleet = store.Drives();
+      for (std::size_t d = 0; d < fleet.ids.size(); ++d) {
+        if (fleet.ids[d] == id) return fleet.drives[d].keyframes.size();
+      }
+      return std::size_t{0};
+    });
+  };
+  const auto run = [&](Clock::duration time, std::int32_t publish, const auto& done) {
+    const auto deadline = Clock::now() + time;
+    auto next_remind = Clock::now();
+    for (int step = 0; Clock::now() < deadline && !(publish <= 0 && done()); ++step) {
+      if (step % 3 == 0 && publish-- > 0) agent->PublishKeyframe();
+      if (step % 50 == 0) agent->PublishHealth(false);
+      if (Clock::now() >= next_remind) {  // the agent does so every kRemindEvery
+        agent->Remind();
+        next_remind += 500ms;
+      }
+      agent->Step();
+      relay->Step();
+      requester.Step(Clock::now());
+      std::this_thread::sleep_for(1ms);
+    }
+  };
+  run(10s, kKeyframes / 2, [] { return true; });
+  relay = std::make_unique<Relay>(port, other_port, 1.0, 44);
+  run(10s, kKeyframes / 2, [] { return true; });
+  const std::size_t heard = keyframes(before);
+  ASSERT_LE(heard, static_cast<std::size_t>(kKeyframes / 2));
+
+  agent.reset();
+  agent = std::make_unique<SmallAgent>(Url(port), state.path().string(), 2);
+  ASSERT_TRUE(agent->good());
+  relay = std::make_unique<Relay>(port, other_port, GetParam() / 100.0, 45);
+  run(60s, kKeyframes, [&] {
+    return keyframes(before) == kKeyframes && keyframes(after) == kKeyframes && requester.outstanding() == 0;
+  });
+  EXPECT_EQ(keyframes(before), static_cast<std::size_t>(kKeyframes));
+  EXPECT_EQ(keyframes(after), static_cast<std::size_t>(kKeyframes));
+  EXPECT_EQ(requester.outstanding(), 0U) << "submaps of the drive before the reboot";
+  EXPECT_EQ(host.refused(), 0U);
+  std::printf("%d %% loss: %zu of %d keyframes heard before the reboot, all after it\n", GetParam(), heard, kKeyframes);
 }
 
 INSTANTIATE_TEST_SUITE_P(PerCent, LossyNetwork, testing::Values(0, 10, 30));

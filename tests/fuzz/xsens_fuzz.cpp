@@ -11,9 +11,10 @@ namespace mapweld::fuzz {
 
 std::vector<Bytes> Seeds() {
   std::vector<Bytes> out;
-  for (std::uint8_t options = 0; options < 4; ++options) {
+  for (std::uint8_t options = 0; options < 16; ++options) {
     Bytes bytes{options};
-    for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t groups = options < 4 ? 4 : 12;  // enough to detect what there is to detect
+    for (std::uint32_t k = 0; k < groups; ++k) {
       for (const can::CanFrame& frame : can::test::Group({.ticks = 25 * k, .counter = static_cast<std::uint16_t>(k)})) {
         bytes.push_back(static_cast<std::uint8_t>(frame.id >> 8U));
         bytes.push_back(static_cast<std::uint8_t>(frame.id));
@@ -34,8 +35,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace mapweld;
   fuzz::Input input(data, size);
   const std::uint64_t selector = input.Number(1);
+  const can::SampleTimeUnit told = (selector & 1U) != 0 ? can::SampleTimeUnit::k1us : can::SampleTimeUnit::k100us;
   can::XsensCodec codec(
-      {.sample_time_unit = (selector & 1U) != 0 ? can::SampleTimeUnit::k1us : can::SampleTimeUnit::k100us,
+      {.sample_time_unit = (selector & 4U) != 0 ? can::SampleTimeUnit::kDetect : told,
+       .inertial_order = (selector & 8U) != 0 ? can::InertialOrder::kDetect : can::InertialOrder::kAsNamed,
        .clock_mode = (selector & 2U) != 0 ? time::ClockMode::kReceive : time::ClockMode::kShared});
   TimeNs receive{1};
   TimeNs last{-1};

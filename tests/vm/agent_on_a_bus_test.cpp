@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -38,12 +39,15 @@ class Bus {
  public:
   bool Open() {
     fd_ = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
+    // Its own frames would only fill its own buffer.
+    return fd_ >= 0 && ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) == 0 && Connect();
+  }
+  // To the vcan0 of today.
+  bool Connect() const {
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(::if_nametoindex("vcan0"));
-    // Its own frames would only fill its own buffer.
-    return fd_ >= 0 && ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) == 0 &&
-           ::bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
+    return ::bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
   }
   ~Bus() {
     if (fd_ >= 0) ::close(fd_);
@@ -152,6 +156,7 @@ class AgentOnABus : public testing::Test {
   Imu imu_{&bus_};
   std::int64_t error_frames_ = 0;
   pid_t agent_ = -1;
+  std::unique_ptr<bus::UdpmBus> lcm_ = std::make_unique<bus::UdpmBus>();
 
  private:
   bool ReadHealth(int wait_ms) {
@@ -169,7 +174,6 @@ class AgentOnABus : public testing::Test {
   bool heard_ = false;
   std::string url_;
   test::TemporaryDirectory state_;
-  std::unique_ptr<bus::UdpmBus> lcm_ = std::make_unique<bus::UdpmBus>();
 };
 
 TEST_F(AgentOnABus, TurnsEveryGroupOfA400HzImuIntoASample) {
@@ -214,6 +218,24 @@ TEST_F(AgentOnABus, GoesOnAfterTheInterfaceWasDown) {
   EXPECT_EQ(health_.heap_calls, 0);
 }
 
+TEST_F(AgentOnABus, GoesOnAfterTheAdapterWasReplugged) {
+  imu_.RunFor(200ms);
+  ASSERT_EQ(std::system("ip link del vcan0"), 0);
+  imu_.RunFor(200ms);  // into nothing
+  // Another device in between, so that the interface gets another number.
+  ASSERT_EQ(std::system("ip link add other0 type vcan; ip link add vcan0 type vcan; ip link set vcan0 up;"
+                        "ip link del other0"),
+            0);
+  ASSERT_TRUE(bus_.Connect()) << std::strerror(errno);
+  imu_.RunFor(1s);  // within which the agent has it again
+  ASSERT_NO_FATAL_FAILURE(NextHealth());
+  const std::int64_t before = health_.imu_samples;
+  imu_.RunFor(500ms);
+  ASSERT_NO_FATAL_FAILURE(NextHealth());
+  EXPECT_GE(health_.imu_samples - before, 200 - 10);
+  EXPECT_EQ(health_.heap_calls, 0);
+}
+
 TEST_F(AgentOnABus, GoesOnAfterBusOff) {
   const std::array<std::uint8_t, 8> data{};
   imu_.RunFor(500ms);
@@ -236,6 +258,23 @@ TEST_F(AgentOnABus, CountsExactlyWhatItsBufferLost) {
   EXPECT_GT(health_.kernel_drops, 0);
   EXPECT_EQ(health_.can_frames + health_.kernel_drops, imu_.frames());
   EXPECT_EQ(health_.heap_calls, 0);
+}
+
+TEST_F(AgentOnABus, RefusesAndCountsAMessageOfAnotherVersion) {
+  mapweldlcm::request_t request{};
+  request.agent_id = 7;
+  request.epoch = 1;
+  std::array<std::uint8_t, 1024> bytes{};
+  const auto n = messages::Encode(request, bytes);
+  ASSERT_TRUE(n.ok());
+  for (const int flipped : {0, 1}) {
+    ASSERT_NO_FATAL_FAILURE(NextHealth());
+    const std::int64_t before = health_.bus_rejected;
+    bytes[7] = static_cast<std::uint8_t>(bytes[7] ^ flipped);  // of the type's fingerprint
+    ASSERT_EQ(lcm_->Publish("MW.7.REQUEST", std::span(bytes).first(n.value())), Status::kOk);
+    ASSERT_NO_FATAL_FAILURE(NextHealth());
+    EXPECT_EQ(health_.bus_rejected - before, flipped);
+  }
 }
 
 TEST_F(AgentOnABus, EndsWhenToldTo) {

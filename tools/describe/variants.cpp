@@ -26,8 +26,8 @@ class CosineComparison : public PlaceMethod {
   [[nodiscard]] float Distance(const Features& a, const Features& b) const override { return CosineDistance(a, b); }
 };
 
-// A describer of core/place.
-template <class Describer>
+// The agent's own.
+template <place::Describer::Method kMethod>
 class AgentDescriptor final : public CosineComparison {
  public:
   Status Describe(const submap::Submap& submap, place::PlaceDescription* place) override {
@@ -35,7 +35,7 @@ class AgentDescriptor final : public CosineComparison {
   }
 
  private:
-  std::unique_ptr<Describer> describer_ = std::make_unique<Describer>();
+  std::unique_ptr<place::Describer> describer_ = std::make_unique<place::Describer>(kMethod);
 };
 
 struct Variant {
@@ -49,7 +49,8 @@ std::unique_ptr<PlaceMethod> Make() {
 }
 
 constexpr std::array kVariants = {
-    Variant{"handmade", Make<AgentDescriptor<place::Describer>>},
+    Variant{"trained", Make<AgentDescriptor<place::Describer::Method::kTrained>>},
+    Variant{"handmade", Make<AgentDescriptor<place::Describer::Method::kHandmade>>},
     Variant{"scan-context", Make<baselines::ScanContext>},
     Variant{"solid", Make<baselines::Solid>},
     Variant{"m2dp", Make<baselines::M2dp>},

@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
@@ -44,6 +46,10 @@ std::filesystem::path ResolveLinks(const std::filesystem::path& path) {
   return error ? path : resolved;
 }
 
+// The temporaries that exist now.
+std::mutex g_temporaries_mutex;
+std::set<std::filesystem::path> g_temporaries;
+
 bool IsDevice(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -58,6 +64,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(ResolveLin
     written_ = target_;
     fd_ = ::open(written_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
+    const std::lock_guard lock(g_temporaries_mutex);
     // O_EXCL with the next free number: two writers of one target never share a temporary.
     for (int attempt = 0; attempt < 1000; ++attempt) {
       written_ = target_;
@@ -65,6 +72,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(ResolveLin
       fd_ = ::open(written_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (fd_ >= 0 || errno != EEXIST) break;
     }
+    if (fd_ >= 0) g_temporaries.insert(written_);
   }
   if (fd_ < 0) Fail(errno);
   buffer_.reserve(kBufferBytes);
@@ -78,7 +86,15 @@ void AtomicFile::Abandon() {
   if (fd_ < 0) return;
   ::close(fd_);
   fd_ = -1;
-  if (written_ != target_) ::unlink(written_.c_str());
+  if (written_ == target_) return;
+  const std::lock_guard lock(g_temporaries_mutex);
+  g_temporaries.erase(written_);
+  ::unlink(written_.c_str());
+}
+
+void AtomicFile::RemoveTemporaries() {
+  g_temporaries_mutex.lock();  // for good
+  for (const std::filesystem::path& temporary : g_temporaries) ::unlink(temporary.c_str());
 }
 
 void AtomicFile::Fail(int error) {
@@ -113,6 +129,8 @@ void AtomicFile::Commit() {
   if (!device && ::fsync(fd_) != 0) Fail(errno);
   const int fd = fd_;
   fd_ = -1;
+  const std::lock_guard lock(g_temporaries_mutex);
+  g_temporaries.erase(written_);
   // Network file systems report a full disk only here. The descriptor is gone either way.
   const bool closed = ::close(fd) == 0;
   if (closed && (device || ::rename(written_.c_str(), target_.c_str()) == 0)) return;

@@ -27,6 +27,10 @@ class AtomicFile {
   // Flushes, syncs, closes and renames. Nothing may be written afterwards.
   void Commit();
 
+  // Unlinks what unfinished files of this process have written so far, and lets none be put in place any more. For a
+  // program that is about to end without unwinding.
+  static void RemoveTemporaries();
+
  private:
   void Flush();
   [[noreturn]] void Fail(int error);

@@ -7,12 +7,15 @@
 #include <vector>
 
 #include "tools/describe/describe_command.hpp"
+#include "tools/doctor/doctor_command.hpp"
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
 #include "tools/odometry/odometry_command.hpp"
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
+#include "tools/spy/spy_command.hpp"
+#include "tools/store/store_commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Merges the LiDAR maps of many vehicles into one, without GPS and without an initial guess.", "mapweld");
@@ -21,10 +24,13 @@ int main(int argc, char** argv) {
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
   mapweld::describe::AddDescribeCommand(app);
+  mapweld::store::AddStoreCommands(app);
   mapweld::eval::AddEvalCommand(app);
   mapweld::sim::AddSimCommand(app);
   mapweld::replay::AddReplayCommand(app);
   mapweld::odometry::AddOdometryCommand(app);
+  mapweld::spy::AddSpyCommand(app);
+  mapweld::doctor::AddDoctorCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/mapweld/merge_inputs.hpp"
+#include "tools/mapweld/interrupt.hpp"
+#include "tools/mapweld/merge_city.hpp"
 #include "tools/mapweld/terminal_progress.hpp"
-#include "tools/merge/merge_pipeline.hpp"
 #include "tools/report/outcome.hpp"
 
 namespace mapweld::merge {
@@ -24,6 +24,7 @@ constexpr int kMapStep = 2;  // every second submap makes the map: 10 m apart, w
 struct MergeArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path out;
+  std::filesystem::path store;
   std::vector<std::string> truth;
   std::filesystem::path truth_folder;
   int threads = 0;
@@ -54,26 +55,34 @@ std::map<std::string, std::filesystem::path> TruthOf(const MergeArguments& argum
 }
 
 void RunMerge(const MergeArguments& arguments) {
+  if (arguments.inputs.empty() && arguments.store.empty()) {
+    throw std::runtime_error("merge: name some recordings, or a --store that holds some");
+  }
+  const CleanInterrupt interrupt(arguments.store.empty()
+                                     ? "merge: interrupted"
+                                     : "merge: interrupted; the same command goes on where this one was");
   TerminalProgress progress("merge");
   const auto begin = Clock::now();
-  MergeInputs inputs(arguments.inputs, arguments.threads, &progress);
-  const std::map<std::string, std::filesystem::path> truth = TruthOf(arguments, inputs.drives());
+  const std::vector<MergeInput> inputs = OpenInputs(arguments.inputs, arguments.threads, &progress);
+  const std::unique_ptr<MergeCity> city =
+      arguments.store.empty() ? CityInMemory(inputs) : CityInStore(arguments.store, inputs, &progress);
+  const std::map<std::string, std::filesystem::path> truth = TruthOf(arguments, city->drives());
   progress.SetSubject("");
   const double build_s = SecondsSince(begin);
 
   MergeConfig config;
   config.threads = arguments.threads;
-  const MergeResult result = MergeDrives(inputs.drives(), inputs, config, &progress);
+  const MergeResult result = city->Merge(config, &progress);
 
   report::OutcomeInput outcome;
-  outcome.title = fmt::format("Map of {} recordings", inputs.drives().size());
-  outcome.drives = &inputs.drives();
+  outcome.title = fmt::format("Map of {} recordings", city->drives().size());
+  outcome.drives = &city->drives();
   outcome.result = &result;
-  ThinnedSubmaps map_submaps(&inputs, kMapStep);
+  ThinnedSubmaps map_submaps(city.get(), kMapStep);
   outcome.submaps = &map_submaps;
   outcome.truth = truth;
   outcome.seconds = {{"submaps", build_s}};
-  outcome.trajectories = inputs.Trajectories(result.merged_T_body);
+  outcome.trajectories = city->Trajectories(result);
   progress.Finish();
   const report::Summary summary = report::WriteOutcome(arguments.out, std::move(outcome));
   fmt::print("{}report: {}\n", report::SummaryTable(summary), (arguments.out / "report.html").string());
@@ -85,11 +94,12 @@ void AddMergeCommand(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("merge", "Merge recordings of any LiDAR odometry, or LCM logs of Mapweld's agents");
   const auto arguments = std::make_shared<MergeArguments>();
-  command
-      ->add_option("recordings", arguments->inputs,
-                   "folders (KITTI layout, or PCD/PLY clouds with a TUM trajectory) and .lcm logs")
-      ->required();
+  command->add_option("recordings", arguments->inputs,
+                      "folders (KITTI layout, or PCD/PLY clouds with a TUM trajectory) and .lcm logs");
   command->add_option("-o,--out", arguments->out, "folder for map, trajectories and report.html")->required();
+  command->add_option(
+      "--store", arguments->store,
+      "file that keeps the city: merges these recordings with all that it holds, and does nothing twice");
   command->add_option("--truth", arguments->truth,
                       "NAME=FILE: true trajectory of a recording, for the errors in the report");
   command->add_option("--truth-folder", arguments->truth_folder,

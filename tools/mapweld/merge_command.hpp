@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mapweld merge DIR DIR ... -o OUT [--truth NAME=FILE]... [--threads N]
+// mapweld merge DIR DIR ... -o OUT [--store CITY.db] [--truth NAME=FILE]... [--threads N]
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -50,19 +50,24 @@ AgentLog::AgentLog(const std::filesystem::path& path) : path_(path), file_(path.
   for (merge::Drive& drive : drives_) drive.name = drives_.size() == 1 ? stem : stem + "_" + drive.name;
 }
 
-std::shared_ptr<const merge::SubmapCloud> AgentLog::Submap(std::size_t drive, std::int32_t keyframe) {
+std::optional<WholeSubmap> AgentLog::Whole(std::size_t drive, std::int32_t keyframe) {
   const auto pieces = pieces_.find({ids_.at(drive), keyframe});
-  if (pieces == pieces_.end()) return nullptr;
+  if (pieces == pieces_.end()) return std::nullopt;
   FleetStore assembly;
   for (const long offset : pieces->second) {
     mapweldlcm::submap_chunk_t message;
-    if (std::fseek(file_.getFilePtr(), offset, SEEK_SET) != 0) return nullptr;
+    if (std::fseek(file_.getFilePtr(), offset, SEEK_SET) != 0) return std::nullopt;
     const lcm::LogEvent* event = file_.readNextEvent();
-    if (event == nullptr || messages::Decode(BytesOf(*event), &message) != Status::kOk) return nullptr;
-    assembly.Add(message);
+    if (event == nullptr || messages::Decode(BytesOf(*event), &message) != Status::kOk) return std::nullopt;
+    auto whole = assembly.Assemble(message);
+    if (whole.has_value()) return whole;
   }
-  const merge::SubmapCloud* cloud = assembly.FindSubmap(ids_[drive], keyframe);
-  return cloud == nullptr ? nullptr : std::make_shared<const merge::SubmapCloud>(*cloud);
+  return std::nullopt;
+}
+
+std::shared_ptr<const merge::SubmapCloud> AgentLog::Submap(std::size_t drive, std::int32_t keyframe) {
+  auto whole = Whole(drive, keyframe);
+  return whole.has_value() ? std::make_shared<const merge::SubmapCloud>(std::move(whole->cloud)) : nullptr;
 }
 
 }  // namespace mapweld::serve

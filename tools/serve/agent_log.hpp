@@ -8,6 +8,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ class AgentLog {
 
   // By agent and epoch. A drive that is alone in its log is called like the file, others get their DriveName behind it.
   [[nodiscard]] const std::vector<merge::Drive>& drives() const { return drives_; }
+  // Nothing when the log does not hold all of it, or what it holds is broken.
+  std::optional<WholeSubmap> Whole(std::size_t drive, std::int32_t keyframe);
   // Null when the log does not hold all of it, or what it holds is broken.
   std::shared_ptr<const merge::SubmapCloud> Submap(std::size_t drive, std::int32_t keyframe);
   // Messages of ours that were refused.

@@ -32,10 +32,12 @@ void Publish(lcm::LCM* lcm, int agent, messages::Kind kind, const Message& messa
 
 // The burst of a fleet's answers; liblcm keeps the oldest messages and drops the newest when its queue is full.
 constexpr int kQueuedMessages = 20000;
+constexpr int kMessagesPerCommit = 500;  // at most; the disk is waited for once
 
 }  // namespace
 
-FleetLink::FleetLink(const std::string& lcm_url) : lcm_(std::make_unique<lcm::LCM>(lcm_url)) {
+FleetLink::FleetLink(const std::string& lcm_url, store::CityStore* city)
+    : lcm_(std::make_unique<lcm::LCM>(lcm_url)), journal_(city, &store_) {
   if (!lcm_->good()) {
     throw std::runtime_error(
         fmt::format("cannot join the LCM network {}; a machine without a route for multicast needs "
@@ -61,8 +63,11 @@ void FleetLink::OnMessage(const lcm::ReceiveBuffer* received, const std::string&
       ++refused_;
       return;
     }
-    const std::lock_guard lock(mutex_);
-    store_.Add(message);
+    {
+      const std::lock_guard lock(mutex_);
+      presence_.Heard({message.agent_id, message.epoch}, Presence::Clock::now());
+    }
+    journal_.Take(message);
   };
   if (parsed.value().kind == messages::Kind::kKeyframe) take(mapweldlcm::keyframe_t{});
   if (parsed.value().kind == messages::Kind::kHealth) take(mapweldlcm::health_t{});
@@ -70,7 +75,52 @@ void FleetLink::OnMessage(const lcm::ReceiveBuffer* received, const std::string&
 }
 
 void FleetLink::Listen() {
-  while (!stop_) lcm_->handleTimeout(100);
+  while (!stop_) {
+    bool some = lcm_->handleTimeout(200) > 0;
+    for (int i = 1; some && i < kMessagesPerCommit; ++i) some = lcm_->handleTimeout(0) > 0;
+    if (!journal_.Commit(FleetJournal::Clock::now(), &mutex_)) continue;
+    const std::lock_guard lock(mutex_);
+    has_news_ = true;
+    news_.notify_all();
+  }
+}
+
+void FleetLink::WaitForNews(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  news_.wait_for(lock, most, [&] { return has_news_; });
+  has_news_ = false;
+}
+
+bool FleetLink::IsHere(const DriveId& id) {
+  const std::lock_guard lock(mutex_);
+  return presence_.IsHere(id, Presence::Clock::now());
+}
+
+std::size_t FleetLink::unsaved() {
+  const std::lock_guard lock(mutex_);
+  return journal_.unsaved();
+}
+
+std::vector<std::string> FleetLink::Warnings() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> warnings;
+  for (const DriveId& id : store_.Ids()) {
+    if (!store_.IsDisputed(id)) continue;
+    warnings.push_back(fmt::format(
+        "two vehicles call themselves agent {} in boot {}, and nothing more is taken from either; give each "
+        "its own --agent-id, or its --state-dir back if that was lost",
+        id.agent, id.epoch));
+  }
+  for (const std::int16_t agent : presence_.twins()) {
+    warnings.push_back(
+        fmt::format("agent {} speaks with two boot counts at a time: two vehicles with one id? Give each its own "
+                    "--agent-id",
+                    agent));
+  }
+  if (journal_.unsaved() > 0) {
+    warnings.push_back(fmt::format("{} records are in memory only: {}", journal_.unsaved(), journal_.trouble()));
+  }
+  return warnings;
 }
 
 void FleetLink::Request(const DriveId& id, std::int8_t kind, const std::vector<std::int32_t>& keyframes) {

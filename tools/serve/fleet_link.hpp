@@ -3,6 +3,8 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -11,7 +13,9 @@
 #include <vector>
 
 #include "core/geom/pose3.hpp"
+#include "tools/serve/fleet_journal.hpp"
 #include "tools/serve/fleet_store.hpp"
+#include "tools/serve/presence.hpp"
 
 namespace lcm {
 class LCM;
@@ -31,8 +35,9 @@ struct MergedKeyframe {
 
 class FleetLink {
  public:
-  // Joins the network and starts to listen. Throws one sentence when the network cannot be joined.
-  explicit FleetLink(const std::string& lcm_url);
+  // Joins the network and starts to listen. Throws one sentence when the network cannot be joined. city: keeps what
+  // comes and gives what came before; null: nothing lasts.
+  explicit FleetLink(const std::string& lcm_url, store::CityStore* city = nullptr);
   ~FleetLink();
   FleetLink(const FleetLink&) = delete;
   FleetLink& operator=(const FleetLink&) = delete;
@@ -43,6 +48,14 @@ class FleetLink {
     const std::lock_guard lock(mutex_);
     return f(store_);
   }
+
+  // Sleeps until something new has come, or for `most`.
+  void WaitForNews(std::chrono::milliseconds most);
+  [[nodiscard]] bool IsHere(const DriveId& id);
+  // What the user has to know, one sentence each; empty when all is well.
+  [[nodiscard]] std::vector<std::string> Warnings();
+  // Records that are in memory only, because the disk fails.
+  [[nodiscard]] std::size_t unsaved();
 
   // Asks for keyframes or submaps, at most 64 per message.
   void RequestKeyframes(const DriveId& id, const std::vector<std::int32_t>& keyframes);
@@ -58,7 +71,11 @@ class FleetLink {
 
   std::unique_ptr<lcm::LCM> lcm_;
   std::mutex mutex_;
+  std::condition_variable news_;
+  bool has_news_ = false;
   FleetStore store_;
+  FleetJournal journal_;
+  Presence presence_;
   std::atomic<std::uint64_t> refused_{0};  // messages that the decoder did not accept
   std::atomic<bool> stop_{false};
   std::thread thread_;

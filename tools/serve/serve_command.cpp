@@ -19,12 +19,19 @@ void AddServeCommand(CLI::App& app) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("-o,--out", arguments->options.out, "folder for map, trajectories and report.html")->required();
+  command->add_option("--store", arguments->options.store,
+                      "file that keeps the city: what was received survives a crash, and the next run goes on from it");
   command
       ->add_option("--agents", arguments->options.agents,
                    "end when this many agents have ended their drives; "
                    "without it, on Ctrl-C")
       ->check(CLI::Range(1, 32767));
   command->add_option("--lcm-url", arguments->options.lcm_url, "LCM network (LCM_DEFAULT_URL, else LCM's default)");
+  command
+      ->add_option_function<double>(
+          "--submap-rate", [arguments](double kb_per_s) { arguments->options.submap_bytes_per_s = kb_per_s * 1e3; },
+          "kB/s of submaps asked of all agents together, most valuable first; without it, what the agents allow")
+      ->check(CLI::PositiveNumber);
   command->add_option("--truth", arguments->truth,
                       "NAME=FILE: true trajectory of a drive, for the errors in the report");
   command->callback([arguments] {

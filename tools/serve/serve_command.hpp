@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mapweld serve -o OUT [--agents N] [--lcm-url URL] [--truth NAME=FILE]...
+// mapweld serve -o OUT [--store CITY.db] [--agents N] [--submap-rate KB_PER_S] [--lcm-url URL] [--truth NAME=FILE]...
 #pragma once
 
 #include <CLI/CLI.hpp>

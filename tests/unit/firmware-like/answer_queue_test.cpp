@@ -17,10 +17,10 @@ constexpr TimeNs kStart{1'000'000'000};
 class AnswerQueueTest : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_EQ(spool_->Open(directory_.File("spool").c_str(), 4 << 20, 1), Status::kOk);
+    ASSERT_EQ(spool_->Open(directory_.File("spool").c_str(), 4 << 20), Status::kOk);
     for (int i = 0; i < 10; ++i) {
       const std::vector<std::uint8_t> submap(50'000, static_cast<std::uint8_t>(i));
-      ASSERT_EQ(spool_->Append(static_cast<std::uint8_t>(RecordKind::kSubmap), i, submap), Status::kOk);
+      ASSERT_EQ(spool_->Append({1, static_cast<std::uint8_t>(RecordKind::kSubmap), i}, submap), Status::kOk);
     }
   }
   static mapweldlcm::request_t Request(std::vector<int> keyframes) {
@@ -61,6 +61,19 @@ TEST_F(AnswerQueueTest, NeverLeavesFasterThanTheBudget) {
 TEST_F(AnswerQueueTest, AskingTwiceSendsOnce) {
   answers_->Add(Request({5}));
   answers_->Add(Request({5, 5}));
+  TimeNs now = kStart;
+  while (answers_->Step(now)) now = now + Milliseconds(1);
+  EXPECT_EQ(answers_->submaps_sent(), 1);
+}
+
+TEST_F(AnswerQueueTest, AnswersForEarlierBootsAndNotForOthers) {
+  const std::vector<std::uint8_t> submap(3000, 7);
+  ASSERT_EQ(spool_->Append({7, static_cast<std::uint8_t>(RecordKind::kSubmap), 5}, submap), Status::kOk);
+  auto request = Request({5});
+  for (const int epoch : {7, 8}) {
+    request.epoch = epoch;
+    answers_->Add(request);
+  }
   TimeNs now = kStart;
   while (answers_->Step(now)) now = now + Milliseconds(1);
   EXPECT_EQ(answers_->submaps_sent(), 1);

@@ -62,6 +62,21 @@ TEST(Options, TakeAnotherImuOnlyWithItsSignalsAndAFreeClock) {
   EXPECT_THAT(with({"--imu-dbc", "a.dbc", "--imu-signals", "a,b,c,d,e,f"}).message, HasSubstr("--time receive"));
 }
 
+TEST(Options, TakeTheIdentifiersOfAnMti) {
+  const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0", "--imu-ids"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), good.begin(), good.end());
+    return Parse(more);
+  };
+  const auto parsed = with({"005,006,011,061,062"});
+  EXPECT_EQ(parsed.outcome, ParseOutcome::kRun);
+  EXPECT_EQ(parsed.options.imu_ids.all()[3], 0x061U);
+  EXPECT_THAT(with({"005,006"}).message, HasSubstr("--imu-ids does not accept '005,006'"));
+  EXPECT_THAT(
+      with({"005,006,011,061,062", "--imu-dbc", "a", "--imu-signals", "a,b,c,d,e,f", "--time", "receive"}).message,
+      HasSubstr("--imu-ids is for an MTi"));
+}
+
 TEST(Options, SayWhichValueIsWrong) {
   const std::vector<std::string> good = {"--agent-id", "3", "--state-dir", "/tmp", "--can", "can0"};
   const auto with = [&](std::vector<std::string> more) {

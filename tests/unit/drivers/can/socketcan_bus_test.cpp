@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -44,6 +45,12 @@ class SocketCanBus : public testing::Test {
     ASSERT_EQ(::write(sender_, &frame, sizeof(frame)), static_cast<ssize_t>(sizeof(frame))) << std::strerror(errno);
   }
   void Receive() { ASSERT_EQ(port_->Receive(out_, &n_), Status::kOk) << std::strerror(errno); }
+  // The sender, too, was told that the interface went down or away.
+  void ForgetSendersError() const {
+    int pending = 0;
+    socklen_t length = sizeof(pending);
+    ASSERT_EQ(::getsockopt(sender_, SOL_SOCKET, SO_ERROR, &pending, &length), 0);
+  }
   static bool SwitchInterface(bool on) {
     ifreq request{};
     std::strncpy(request.ifr_name, kInterface, IFNAMSIZ - 1);
@@ -146,14 +153,41 @@ TEST_F(SocketCanBus, GoesOnAfterTheInterfaceWasDown) {
   EXPECT_EQ(port_->Receive(out_, &n_), Status::kNotReady);
   EXPECT_EQ(n_, 0U);
   ASSERT_TRUE(SwitchInterface(true));
-  int pending = 0;  // the sender, too, was told that the interface went down
-  socklen_t length = sizeof(pending);
-  ASSERT_EQ(::getsockopt(sender_, SOL_SOCKET, SO_ERROR, &pending, &length), 0);
+  ForgetSendersError();
   Send(0x034);
   Receive();
   ASSERT_EQ(n_, 1U);
   EXPECT_TRUE(out_[0].gap);
   EXPECT_EQ(port_->counters().interface_down, 1U);
+}
+
+TEST_F(SocketCanBus, GoesOnWithTheSameFilterAfterTheAdapterWasReplugged) {
+  const int index = static_cast<int>(::if_nametoindex(kInterface));
+  if (std::system("ip link del vcan0") != 0) GTEST_SKIP() << "not allowed to remove " << kInterface;
+  pollfd waiting{.fd = port_->fd(), .events = POLLIN, .revents = 0};
+  EXPECT_EQ(::poll(&waiting, 1, 1000), 1);
+  Status status = Status::kOk;
+  for (int i = 0; i < 10 && port_->counters().unplugged == 0; ++i) status = port_->Receive(out_, &n_);
+  EXPECT_EQ(status, Status::kNotReady);
+  EXPECT_EQ(port_->Reconnect(), Status::kNotReady) << "not there yet";
+  const int fd = port_->fd();
+  // Another device in between, so that the interface gets another number.
+  ASSERT_EQ(std::system("ip link add other0 type vcan; ip link add vcan0 type vcan; ip link set vcan0 up"), 0);
+  ASSERT_NE(static_cast<int>(::if_nametoindex(kInterface)), index);
+  ASSERT_EQ(port_->Reconnect(), Status::kOk);
+  EXPECT_EQ(port_->fd(), fd) << "whoever polls it need not know";
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(kInterface));
+  ASSERT_EQ(::bind(sender_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  ForgetSendersError();
+  Send(0x100);
+  Send(0x034);
+  Receive();
+  ASSERT_EQ(n_, 1U) << "the unwanted frame stays out";
+  EXPECT_EQ(out_[0].id, 0x034U);
+  EXPECT_TRUE(out_[0].gap);
+  EXPECT_EQ(std::system("ip link del other0"), 0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -113,6 +114,22 @@ TEST(AtomicFile, RefusesAFolderAsTarget) {
   const test::TempFolder folder;
   EXPECT_THAT(test::ErrorOf([&] { AtomicFile file(folder.path()); }), HasSubstr("name a file, not a folder"));
   EXPECT_THAT(folder.Files(), IsEmpty());
+}
+
+TEST(AtomicFile, LeavesNothingBehindAProgramThatEndsInTheMiddle) {
+  const test::TempFolder folder;
+  WriteFileAtomically(folder / "map.ply", "old");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    AtomicFile file(folder / "map.ply");
+    AtomicFile other(folder / "other.ply");
+    file.Write(std::string(1 << 20, 'x'));
+    AtomicFile::RemoveTemporaries();
+    ::_exit(0);
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(ReadFile(folder / "map.ply"), "old");
+  EXPECT_THAT(folder.Files(), ElementsAre("map.ply"));
 }
 
 TEST(AtomicFile, LetsTwoWritersOfOneTargetEachWriteAWholeFile) {

@@ -83,8 +83,34 @@ TEST(FleetStore, IsCompleteOnlyWhenTheDriveHasEndedAndEverythingIsHere) {
   EXPECT_FALSE(store.IsComplete({1, 1}));
   store.Add(Keyframe(1, 1, 1));
   EXPECT_TRUE(store.IsComplete({1, 1}));
-  store.Add(Health(1, 2, 2));
-  EXPECT_FALSE(store.IsComplete({1, 1}));
+  store.Add(Health(1, 1, 2));
+  EXPECT_TRUE(store.IsComplete({1, 1})) << "an older message that was overtaken on the way reopens nothing";
+}
+
+TEST(FleetStore, FindsTwoVehiclesWithOneIdAndMergesNeither) {
+  FleetStore store;
+  for (int k = 0; k < 5; ++k) store.Add(Keyframe(1, 1, k));
+  mapweldlcm::keyframe_t other = Keyframe(1, 1, 2);
+  other.odom_t_body[1] = 3;
+  store.Add(other);
+  EXPECT_TRUE(store.IsDisputed({1, 1}));
+  EXPECT_TRUE(store.Drives().drives.empty()) << "nobody can say whose keyframes these are";
+  store.Add(Keyframe(1, 1, 5));
+  EXPECT_EQ(store.counters().keyframes, 5U);
+  EXPECT_EQ(store.counters().disputed_keyframes, 2U);
+  EXPECT_TRUE(store.MissingKeyframes({1, 1}, 10).empty()) << "nothing more is asked for";
+}
+
+TEST(FleetStore, ACompleteDriveStaysWhenAnotherVehicleTakesItsName) {
+  FleetStore store;
+  for (int k = 0; k < 5; ++k) store.Add(Keyframe(1, 1, k));
+  store.Add(Health(1, 5, 4));
+  mapweldlcm::keyframe_t other = Keyframe(1, 1, 0);
+  other.odom_t_body[1] = 3;
+  store.Add(other);
+  ASSERT_EQ(store.Drives().drives.size(), 1U);
+  EXPECT_EQ(store.Drives().drives[0].keyframes[0].odom_T_body.t.y(), 0);
+  EXPECT_TRUE(store.IsDisputed({1, 1}));
 }
 
 TEST(FleetStore, ARestartedAgentBeginsANewDrive) {

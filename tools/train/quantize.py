@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a trained descriptor into the agent's int8 model: quantize.py MODEL.pt --calibrate SET.npz ... -o MODEL.mwm --name NAME
+
+Batch norms are folded into weights, scales are taken from the calibration places, and the integer network is run beside
+the floating-point one: the cosine between both is printed. --golden writes test vectors.
+"""
+import argparse
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+
+from inputs import plan_image
+from model_blob import pack_weights, write_model
+from network import SPECTRUM_OUTPUTS, TrainedCode, fuse, image_features
+from places import open_places, recall
+from submaps import read_submaps
+
+
+def padded(values, to, fill, dtype):
+    out = np.full(-(-len(values) // to) * to, fill, dtype)
+    out[: len(values)] = values
+    return out
+
+
+def fixed_point(factor):
+    """factor = multiplier / 2^shift with multiplier in 2^30 .. 2^31 - 1: docs/model_format.md."""
+    mantissa, exponent = np.frexp(factor)  # factor = mantissa * 2^exponent, mantissa in 0.5 .. 1
+    multiplier = np.rint(mantissa * 2.0**31)
+    carry = multiplier == 2.0**31
+    multiplier, shift = np.where(carry, 2.0**30, multiplier), 31 - exponent - carry
+    if shift.min() < 32 or shift.max() > 62:
+        raise ValueError("a layer's output step is out of reach of its inputs'; calibrate with other places")
+    return multiplier.astype(np.int32), shift.astype(np.int32)
+
+
+def quantized_rows(weights):
+    """[N][K] float -> int8 rows and the step of each."""
+    step = np.maximum(np.abs(weights).max(1), 1e-12) / 127
+    return np.rint(weights / step[:, None]).astype(np.int64), step
+
+
+class IntegerConv:
+    """What core/nn/conv2d computes, exactly."""
+
+    def __init__(self, layer, in_step, out_step):
+        scale = (layer.norm.weight / torch.sqrt(layer.norm.running_var + layer.norm.eps)).detach().double().numpy()
+        weights = layer.conv.weight.detach().double().numpy() * scale[:, None, None, None]
+        self.shape = weights.shape
+        rows = weights.transpose(0, 2, 3, 1).reshape(len(weights), -1)  # K counts ky, kx, c
+        self.rows, step = quantized_rows(rows)
+        bias = layer.norm.bias.detach().double().numpy() - layer.norm.running_mean.double().numpy() * scale
+        self.bias = np.rint(bias / (in_step * step)).astype(np.int64)
+        self.multiplier, self.shift = fixed_point(in_step * step / out_step)
+        self.stride = layer.conv.stride
+
+    def __call__(self, x):
+        n, c, h, w = self.shape[0], self.shape[1], *self.shape[2:]
+        kernel = torch.from_numpy(self.rows.reshape(n, h, w, c).transpose(0, 3, 1, 2).astype(np.float64).copy())
+        x = F.pad(F.pad(torch.from_numpy(x.astype(np.float64)), (1, 1, 0, 0), mode="circular"), (0, 0, 1, 1))
+        sums = F.conv2d(x, kernel, stride=self.stride).numpy().astype(np.int64) + self.bias[None, :, None, None]
+        shift = self.shift.astype(np.int64)[None, :, None, None]
+        scaled = (sums * self.multiplier.astype(np.int64)[None, :, None, None] + (1 << (shift - 1))) >> shift
+        return np.clip(scaled, 0, 127)
+
+    def tensors(self, name):
+        return {f"{name}.weight": pack_weights(self.rows), f"{name}.bias": padded(self.bias, 8, 0, np.int32),
+                f"{name}.multiplier": padded(self.multiplier, 8, 2**30, np.int32),
+                f"{name}.shift": padded(self.shift, 8, 32, np.int32)}
+
+
+class IntegerNetwork:
+    def __init__(self, network, x):
+        """x: calibration images, float [n, 3, 32, 64]."""
+        with torch.no_grad():
+            seen = [network.input_norm(x - 1)]
+            for layer in (network.first, network.second, network.third):
+                seen.append(layer(seen[-1]))
+            features = network.feature_norm(network.features(x, image_features(x)))
+        # Rare peaks are cut so that all the rest is finer.
+        steps = [float(np.quantile(s.abs().numpy(), 0.99999)) / 127 for s in seen]
+        feature_step = float(np.quantile(features.abs().numpy(), 0.99999)) / 127
+
+        norm = network.input_norm
+        scale = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().double().numpy()
+        self.input_scale = (scale / 64 / steps[0]).astype(np.float32)
+        self.input_offset = ((norm.bias.detach().double().numpy() - (1 + norm.running_mean.double().numpy()) * scale)
+                             / steps[0]).astype(np.float32)
+        self.convs = [IntegerConv(layer, steps[i], steps[i + 1])
+                      for i, layer in enumerate((network.first, network.second, network.third))]
+        self.map_step = np.float32(steps[3])
+        norm = network.feature_norm
+        scale = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().double().numpy()
+        self.feature_scale = (scale / feature_step).astype(np.float32)
+        self.feature_offset = ((norm.bias.detach().double().numpy() - norm.running_mean.double().numpy() * scale)
+                               / feature_step).astype(np.float32)
+        self.rows, step = quantized_rows(network.last.weight.detach().double().numpy())
+        self.output_scale = (step * feature_step).astype(np.float32)
+        self.network = network
+
+    def __call__(self, pixels):
+        """uint8 [n, 3, 32, 64] -> float32 [n, 256] of unit length."""
+        x = pixels.astype(np.float32) * self.input_scale[None, :, None, None] + self.input_offset[None, :, None, None]
+        x = np.floor(np.clip(x, -127, 127) + np.float32(0.5)).astype(np.int64)
+        for conv in self.convs:
+            x = conv(x)
+        image = torch.from_numpy(pixels.astype(np.float32) / 64)
+        feature_map = torch.from_numpy(x.astype(np.float32) * self.map_step)
+        with torch.no_grad():
+            features = torch.cat([self.network.map_features(feature_map), image_features(image)], 1)
+        features = features.numpy() * self.feature_scale + self.feature_offset
+        q = np.floor(np.clip(features, -127, 127) + np.float32(0.5))
+        out = (q.astype(np.float64) @ self.rows.T.astype(np.float64)).astype(np.float32) * self.output_scale
+        return out / np.linalg.norm(out, axis=1, keepdims=True)
+
+    def tensors(self):
+        out = {"input.scale": self.input_scale, "input.offset": self.input_offset}
+        for name, conv in zip(("first", "second", "third"), self.convs):
+            out |= conv.tensors(name)
+        out |= {"map.scale": np.array([self.map_step]), "feature.scale": self.feature_scale,
+                "feature.offset": self.feature_offset, "last.weight": pack_weights(self.rows),
+                "last.bias": np.zeros(-(-len(self.rows) // 8) * 8, np.int32), "output.scale": self.output_scale}
+        return out
+
+
+class IntegerCode:
+    """The agent's descriptor before its last rounding to int8."""
+
+    def __init__(self, model, images, share):
+        model.eval()
+        x = torch.from_numpy(images)
+        self.model, self.share = model, np.float32(share)
+        self.network = IntegerNetwork(model.network, x)
+        with torch.no_grad():
+            spread = model.spectrum(image_features(x)).std(0).numpy()
+        # The features in which places differ most, in the order of the image's features.
+        self.index = np.sort(np.argsort(-spread, kind="stable")[:SPECTRUM_OUTPUTS]).astype(np.int32)
+
+    def __call__(self, pixels):
+        with torch.no_grad():
+            spectrum = self.model.spectrum(image_features(torch.from_numpy(pixels.astype(np.float32) / 64)))
+        return fuse(spectrum[:, torch.from_numpy(self.index).long()], torch.from_numpy(self.network(pixels)),
+                    float(self.share)).numpy()
+
+    def tensors(self):
+        gain = torch.exp(self.model.spectrum.log_gain).detach().numpy()[self.index]
+        return {"network.share": np.array([self.share]), "spectrum.index": self.index, "spectrum.gain": gain,
+                **self.network.tensors()}
+
+
+def in_parts(run, pixels):
+    return np.concatenate([run(pixels[i : i + 256]) for i in range(0, len(pixels), 256)])
+
+
+def write_golden(path, submap_set, code):
+    """Four thinned submaps and what the agent must make of them: uint32 count, then per submap uint32 points, int16
+    [points, 3] in centimetres and float32 [1024]."""
+    submaps = list(read_submaps(submap_set))
+    with open(path, "wb") as file:
+        file.write(np.uint32(4).tobytes())
+        for submap in submaps[len(submaps) // 8 :: len(submaps) // 4][:4]:
+            centimetres = np.rint(submap.points[::6] * 100).astype("<i2")
+            image = plan_image(centimetres.astype(np.float32) * np.float32(0.01))
+            file.write(np.uint32(len(centimetres)).tobytes() + centimetres.tobytes())
+            file.write(code(image[None]).astype("<f4").tobytes())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("model")
+    parser.add_argument("--calibrate", nargs="+", required=True, help="the sets of inputs.py that it was trained on")
+    parser.add_argument("-o", "--out", required=True)
+    parser.add_argument("--name", required=True, help="name and date of the model, for logs")
+    parser.add_argument("--share", type=float, default=0.07, help="of the network in the squared length")
+    parser.add_argument("--check", nargs="*", default=[], help=".npz sets on which Recall@1 of both is compared")
+    parser.add_argument("--golden", nargs=2, metavar=("SET.bin", "FILE"), help="test vectors for the agent's code")
+    a = parser.parse_args()
+    model = TrainedCode()
+    model.load_state_dict(torch.load(a.model))
+    rng = np.random.default_rng(0)
+    sets = [open_places(text) for text in a.calibrate]
+    images = np.concatenate([s.images(np.sort(rng.choice(s.index, min(256, len(s.index)), replace=False)), 0)
+                             for s in sets])
+    integer = IntegerCode(model, images, a.share)
+    write_model(a.out, a.name, integer.tensors())
+
+    def floating(pixels):
+        with torch.no_grad():
+            spectrum, network = model(torch.from_numpy(pixels.astype(np.float32) / 64))
+        return fuse(spectrum[:, torch.from_numpy(integer.index).long()], network, a.share).numpy()
+
+    def network_only(pixels):
+        with torch.no_grad():
+            return model(torch.from_numpy(pixels.astype(np.float32) / 64))[1].numpy()
+
+    for path in a.check:
+        places = open_places(path)
+        pixels = places.image[:, 0]
+        cosine = (in_parts(network_only, pixels) * in_parts(integer.network, pixels)).sum(1)
+        f, q = in_parts(floating, pixels), in_parts(integer, pixels)
+        print(f"{path}: network, cosine of int8 and float: mean {cosine.mean():.5f}, lowest {cosine.min():.5f}; "
+              f"descriptor, Recall@1: float {recall(places, f, f)[0]:.4f}, int8 {recall(places, q, q)[0]:.4f}")
+    if a.golden:
+        write_golden(a.golden[1], a.golden[0], integer)
+
+
+if __name__ == "__main__":
+    main()
