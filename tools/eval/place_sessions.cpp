@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -46,16 +47,20 @@ KeyframeSource WithTruth(const fs::path& folder, KeyframeSource source) {
 
 void ForEachSession(const SessionArguments& arguments, merge::TerminalProgress* progress,
                     const std::function<void(KeyframeSource)>& visit) {
-  int sessions = 0;
-  bool any_log = false;
+  const bool any_log = std::any_of(arguments.inputs.begin(), arguments.inputs.end(), [](const std::string& input) {
+    return fs::path(input).extension() == ".lcm";
+  });
+  const auto check = [&](std::size_t sessions) {
+    if (arguments.truth_folder.empty() && any_log && sessions > 1) {
+      throw std::runtime_error("each agent's log has a frame of its own; to compare several, give --truth-folder");
+    }
+  };
+  check(arguments.inputs.size());
+  std::size_t sessions = 0;
   for (const std::string& input : arguments.inputs) {
-    any_log = any_log || fs::path(input).extension() == ".lcm";
     progress->SetSubject(fs::path(input).filename().string());
     for (KeyframeSource& source : describe::OpenKeyframes(input, arguments.radius_m, arguments.threads, progress)) {
-      ++sessions;
-      if (arguments.truth_folder.empty() && any_log && sessions > 1) {
-        throw std::runtime_error("each agent's log has a frame of its own; to compare several, give --truth-folder");
-      }
+      check(++sessions);
       visit(arguments.truth_folder.empty() ? std::move(source) : WithTruth(arguments.truth_folder, std::move(source)));
     }
   }
