@@ -198,9 +198,7 @@ bool Apply(int id, const char* value, Options* options) {
     case kAnswerRate:
       return ParseNumber(value, 2000, 1'000'000'000, &options->answer_bytes_per_s);
     case kIndoor:
-      options->agent.submap.radius_m = 20.0F;
-      options->agent.submap.reach_m = 60.0;
-      options->agent.release_distance_m = 40.0;
+      pipeline::UseIndoors(&options->agent);
       return true;
     default:
       return false;

@@ -95,9 +95,8 @@ Status Lio::AddScan(const sensor::Scan& scan, LioUpdate* update) {
   if (!aligned_) StartWithoutImu(scan.t_begin);
   if (scan.t_end <= state_.t) return Status::kStale;
 
-  scan::ScanMotion motion;
-  PredictTo(scan.t_begin, scan.t_end, &motion);
-  scan::Deskew(scan, motion, config_.body_T_lidar, config_.deskew, &body_points_);
+  PredictTo(scan.t_begin, scan.t_end);
+  scan::Deskew(scan, motion_, config_.body_T_lidar, config_.deskew, &body_points_);
   downsample_.Run(body_points_, config_.feature_voxel_m, &features_);
 
   *update = LioUpdate{};
@@ -142,7 +141,7 @@ void Lio::Step(TimeNs t_end) {
 }
 
 // Carries the state to t_end and records the body's motion over [t_begin, t_end] for de-skewing.
-void Lio::PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion) {
+void Lio::PredictTo(TimeNs t_begin, TimeNs t_end) {
   constexpr std::size_t kSteps = scan::ScanMotion::kSteps;
   const DurationNs step{(t_end - t_begin).ns / static_cast<std::int64_t>(kSteps)};
   std::array<geom::Pose3, kSteps + 1> local_T_body;
@@ -170,7 +169,7 @@ void Lio::PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion) {
   for (; next_step <= kSteps; ++next_step) local_T_body[next_step] = state_.local_T_body;
 
   const geom::Pose3 end_T_local = state_.local_T_body.Inverse();
-  for (std::size_t i = 0; i <= kSteps; ++i) motion->end_T_body[i] = end_T_local * local_T_body[i];
+  for (std::size_t i = 0; i <= kSteps; ++i) motion_.end_T_body[i] = end_T_local * local_T_body[i];
 }
 
 // Second scan: which speed ahead or astern brings it onto the first? Both are smeared alike, so the shift between them
@@ -184,7 +183,8 @@ void Lio::GuessSpeed() {
     geom::Pose3 shifted = scan_state_.local_T_body;
     shifted.t += speed_m_s * dt_s * ahead;
     shifted.q = state_.local_T_body.q;
-    return MatchScan(features_, shifted, kGateM, config_.match, &map_).inliers;
+    planes_.Find(features_, shifted, &map_);
+    return MatchScan(features_, planes_, shifted, kGateM, config_.match).inliers;
   };
   int most = std::max(config_.min_inliers, inliers_at(0) * 5 / 4);
   double best_m_s = 0;
@@ -203,15 +203,14 @@ void Lio::GuessSpeed() {
 
 // The speed has just become known: the scan is de-skewed again and the map starts from it, without the smeared first.
 void Lio::BeginMapAgain(const sensor::Scan& scan) {
-  scan::ScanMotion motion;
   const geom::Vec3d v_body = state_.local_T_body.q.conjugate() * state_.v_local;
   const double duration_s = (scan.t_end - scan.t_begin).Seconds();
   for (std::size_t i = 0; i <= scan::ScanMotion::kSteps; ++i) {
     const double before_end_s =
         duration_s * (1 - static_cast<double>(i) / static_cast<double>(scan::ScanMotion::kSteps));
-    motion.end_T_body[i] = {-before_end_s * v_body, geom::ExpSo3(-before_end_s * turn_body_)};
+    motion_.end_T_body[i] = {-before_end_s * v_body, geom::ExpSo3(-before_end_s * turn_body_)};
   }
-  scan::Deskew(scan, motion, config_.body_T_lidar, config_.deskew, &body_points_);
+  scan::Deskew(scan, motion_, config_.body_T_lidar, config_.deskew, &body_points_);
   map_.Clear();
   speed_unknown_ = false;
 }
@@ -227,7 +226,8 @@ void Lio::UpdateFromScan(LioUpdate* update) {
   InertialState estimate = prediction;
   for (int i = 0; i < config_.max_iterations; ++i) {
     const double gate = i < 3 ? widen * kFirstGateM[i] : 0.0;
-    ScanMatch match = MatchScan(features_, estimate.local_T_body, gate, config_.match, &map_);
+    if (i == 0 || !planes_.HoldAt(estimate.local_T_body)) planes_.Find(features_, estimate.local_T_body, &map_);
+    ScanMatch match = MatchScan(features_, planes_, estimate.local_T_body, gate, config_.match);
     update->iterations = i + 1;
     update->inliers = match.inliers;
     if (match.inliers < config_.min_inliers) return;

@@ -74,13 +74,15 @@ class Lio {
   [[nodiscard]] const InertialState& state() const { return state_; }
   // The last scan's de-skewed points in the body frame at its end.
   [[nodiscard]] const scan::BodyPoints& body_points() const { return body_points_; }
+  // How the body moved during that scan, as predicted.
+  [[nodiscard]] const scan::ScanMotion& scan_motion() const { return motion_; }
 
  private:
   void StartFromAlignment(TimeNs t);
   void StartWithoutImu(TimeNs t);
   [[nodiscard]] bool Measured() const;
   void Step(TimeNs t_end);
-  void PredictTo(TimeNs t_begin, TimeNs t_end, scan::ScanMotion* motion);
+  void PredictTo(TimeNs t_begin, TimeNs t_end);
   static constexpr int kResyncSamples = 20;
   static constexpr int kStuckSamples = 20;  // a live sensor's noise does not give the same six numbers so often
 
@@ -109,9 +111,11 @@ class Lio {
   int repeats_ = 0;
   int stale_in_a_row_ = 0;
   RingBuffer<sensor::ImuSample, kCap.imu_ring> imu_;
+  scan::ScanMotion motion_;
   scan::BodyPoints body_points_;
   scan::VoxelDownsample downsample_;
   scan::FeaturePoints features_;
+  FeaturePlanes planes_;
 };
 
 }  // namespace mapweld::lio

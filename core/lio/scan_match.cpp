@@ -6,15 +6,32 @@
 
 namespace mapweld::lio {
 
-ScanMatch MatchScan(const scan::FeaturePoints& features, const geom::Pose3& odom_T_body, double gate_m,
-                    const ScanMatchConfig& config, VoxelMap* map) {
+void FeaturePlanes::Find(const scan::FeaturePoints& features, const geom::Pose3& odom_T_body, VoxelMap* map) {
+  const Eigen::Matrix3f rotation = odom_T_body.q.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = odom_T_body.t.cast<float>();
+  found_at_ = odom_T_body;
+  planes_.resize(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (!map->FindPlane(rotation * features[i].p + translation, &planes_[i])) planes_[i].variance = -1;
+  }
+}
+
+bool FeaturePlanes::HoldAt(const geom::Pose3& odom_T_body) const {
+  constexpr double kShift_m = 0.05;
+  constexpr double kTurn_rad = 0.05 / 25;
+  return (odom_T_body.t - found_at_.t).norm() < kShift_m && odom_T_body.q.angularDistance(found_at_.q) < kTurn_rad;
+}
+
+ScanMatch MatchScan(const scan::FeaturePoints& features, const FeaturePlanes& planes, const geom::Pose3& odom_T_body,
+                    double gate_m, const ScanMatchConfig& config) {
   const Eigen::Matrix3f rotation = odom_T_body.q.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = odom_T_body.t.cast<float>();
   ScanMatch match;
-  for (const scan::BodyPoint& feature : features) {
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const Plane& plane = planes.planes()[i];
+    if (plane.variance < 0) continue;
+    const scan::BodyPoint& feature = features[i];
     const Eigen::Vector3f p_odom = rotation * feature.p + translation;
-    Plane plane;
-    if (!map->FindPlane(p_odom, &plane)) continue;
     ++match.matched;
     const double residual = static_cast<double>(plane.normal.dot(p_odom - plane.mean));
     const double variance = config.range_sigma_m * config.range_sigma_m + static_cast<double>(plane.variance);

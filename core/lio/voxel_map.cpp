@@ -14,13 +14,31 @@ Eigen::Vector3f CellCentre(const Cell& cell, float voxel_m) {
 
 }  // namespace
 
-VoxelMap::Voxel* VoxelMap::Find(const Cell& cell) {
-  const std::uint64_t key = PackCell(cell);
-  Voxel* const bucket = &voxels_[(HashKey(key) % kBuckets) * kWays];
+std::size_t VoxelMap::Find(std::uint64_t key) const {
+  const std::size_t bucket = HashKey(key) % kBuckets;
   for (std::size_t i = 0; i < kWays; ++i) {
-    if (bucket[i].key == key) return &bucket[i];
+    if (keys_[bucket].key[i] == key) return bucket * kWays + i;
   }
-  return nullptr;
+  return kNone;
+}
+
+// A free slot of the bucket, or that of the voxel not touched for longest.
+std::size_t VoxelMap::MakeRoom(std::uint64_t key) {
+  const std::size_t bucket = HashKey(key) % kBuckets;
+  std::size_t best = bucket * kWays;
+  for (std::size_t i = 0; i < kWays; ++i) {
+    const std::size_t slot = bucket * kWays + i;
+    if (keys_[bucket].key[i] == 0) {
+      best = slot;
+      break;
+    }
+    if (touched_scan_[slot] < touched_scan_[best]) best = slot;
+  }
+  if (keys_[bucket].key[best % kWays] != 0) ++evicted_;
+  keys_[bucket].key[best % kWays] = key;
+  count_[best] = 0;
+  voxels_[best] = Voxel{};
+  return best;
 }
 
 Status VoxelMap::Insert(const Eigen::Vector3f& p_odom) {
@@ -28,38 +46,28 @@ Status VoxelMap::Insert(const Eigen::Vector3f& p_odom) {
   if (!scaled.allFinite() || scaled.cwiseAbs().maxCoeff() >= static_cast<float>(kCellLimit)) return Status::kOutOfRange;
   const Cell cell{CellIndex(scaled.x()), CellIndex(scaled.y()), CellIndex(scaled.z())};
   const std::uint64_t key = PackCell(cell);
-  Voxel* const bucket = &voxels_[(HashKey(key) % kBuckets) * kWays];
-  Voxel* voxel = nullptr;
-  Voxel* oldest = bucket;
-  for (std::size_t i = 0; i < kWays && voxel == nullptr; ++i) {
-    if (bucket[i].key == key) voxel = &bucket[i];
-    if (oldest->key != 0 && (bucket[i].key == 0 || bucket[i].touched_scan < oldest->touched_scan)) oldest = &bucket[i];
-  }
-  if (voxel == nullptr) {
-    if (oldest->key != 0) ++evicted_;
-    voxel = oldest;
-    *voxel = Voxel{};
-    voxel->key = key;
-  }
-  voxel->touched_scan = scan_;
-  if (voxel->count >= config_.mature_points) return Status::kOk;
-  ++voxel->count;
+  std::size_t slot = Find(key);
+  if (slot == kNone) slot = MakeRoom(key);
+  touched_scan_[slot] = scan_;
+  if (count_[slot] >= config_.mature_points) return Status::kOk;
+  ++count_[slot];
+  Voxel& voxel = voxels_[slot];
   const Eigen::Vector3f d = p_odom - CellCentre(cell, config_.voxel_m);
-  voxel->sum[0] += d.x();
-  voxel->sum[1] += d.y();
-  voxel->sum[2] += d.z();
-  voxel->sum_sq[0] += d.x() * d.x();
-  voxel->sum_sq[1] += d.x() * d.y();
-  voxel->sum_sq[2] += d.x() * d.z();
-  voxel->sum_sq[3] += d.y() * d.y();
-  voxel->sum_sq[4] += d.y() * d.z();
-  voxel->sum_sq[5] += d.z() * d.z();
+  voxel.sum[0] += d.x();
+  voxel.sum[1] += d.y();
+  voxel.sum[2] += d.z();
+  voxel.sum_sq[0] += d.x() * d.x();
+  voxel.sum_sq[1] += d.x() * d.y();
+  voxel.sum_sq[2] += d.x() * d.z();
+  voxel.sum_sq[3] += d.y() * d.y();
+  voxel.sum_sq[4] += d.y() * d.z();
+  voxel.sum_sq[5] += d.z() * d.z();
   return Status::kOk;
 }
 
-void VoxelMap::FitPlane(Voxel* voxel) const {
-  voxel->fitted_count = voxel->count;
-  const double n = voxel->count;
+void VoxelMap::FitPlane(const Cell& cell, std::uint32_t count, Voxel* voxel) const {
+  voxel->fitted_count = count;
+  const double n = count;
   const geom::Vec3d mean = Eigen::Map<const Eigen::Vector3f>(voxel->sum.data()).cast<double>() / n;
   const Eigen::Matrix<double, 6, 1> s =
       Eigen::Map<const Eigen::Matrix<float, 6, 1>>(voxel->sum_sq.data()).cast<double>();
@@ -72,7 +80,7 @@ void VoxelMap::FitPlane(Voxel* voxel) const {
   voxel->flat = widths(0) <= static_cast<double>(config_.max_thickness_m) &&
                 widths(1) >= static_cast<double>(config_.min_width_m) && widths(1) > 2.5 * widths(0);
   if (!voxel->flat) return;
-  const Eigen::Vector3f centre = CellCentre(UnpackCell(voxel->key), config_.voxel_m) + mean.cast<float>();
+  const Eigen::Vector3f centre = CellCentre(cell, config_.voxel_m) + mean.cast<float>();
   const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
   for (int i = 0; i < 3; ++i) {
     voxel->mean[static_cast<std::size_t>(i)] = centre(i);
@@ -93,19 +101,21 @@ bool VoxelMap::FindPlane(const Eigen::Vector3f& p_odom, Plane* plane) {
   float best = config_.voxel_m * config_.voxel_m;
   bool found = false;
   for (const auto& step : near) {
-    Voxel* const voxel = Find({own.x + step[0], own.y + step[1], own.z + step[2]});
-    if (voxel == nullptr || voxel->count < config_.min_points) continue;
-    voxel->touched_scan = scan_;
+    const Cell cell{own.x + step[0], own.y + step[1], own.z + step[2]};
+    const std::size_t slot = Find(PackCell(cell));
+    if (slot == kNone || count_[slot] < config_.min_points) continue;
+    touched_scan_[slot] = scan_;
+    Voxel& voxel = voxels_[slot];
     // Refit only when a quarter of the points is new: bounds the eigenvalue work per voxel to a logarithm of its
     // points.
-    if (voxel->count >= voxel->fitted_count + voxel->fitted_count / 4 + 1) FitPlane(voxel);
-    if (!voxel->flat) continue;
-    const Eigen::Vector3f mean(voxel->mean[0], voxel->mean[1], voxel->mean[2]);
+    if (count_[slot] >= voxel.fitted_count + voxel.fitted_count / 4 + 1) FitPlane(cell, count_[slot], &voxel);
+    if (!voxel.flat) continue;
+    const Eigen::Vector3f mean(voxel.mean[0], voxel.mean[1], voxel.mean[2]);
     const float distance = (p_odom - mean).squaredNorm();
     if (distance >= best) continue;
     best = distance;
     found = true;
-    *plane = {mean, Eigen::Vector3f(voxel->normal[0], voxel->normal[1], voxel->normal[2]), voxel->variance};
+    *plane = {mean, Eigen::Vector3f(voxel.normal[0], voxel.normal[1], voxel.normal[2]), voxel.variance};
   }
   return found;
 }

@@ -2,7 +2,6 @@
 #include "core/nn/linear.hpp"
 
 #include <array>
-#include <cstdlib>
 
 namespace mapweld::nn {
 namespace {
@@ -18,6 +17,11 @@ std::int8_t Weight(const LinearLayer& layer, std::size_t output, std::size_t inp
   const std::size_t group = block * layer.groups() + input / kInputsPerGroup;
   return layer.p
       .weights[(group * kOutputsPerBlock + output % kOutputsPerBlock) * kInputsPerGroup + input % kInputsPerGroup];
+}
+
+int Magnitude(const LinearLayer& layer, std::size_t output, std::size_t input) {
+  const int w = Weight(layer, output, input);
+  return w < 0 ? -w : w;
 }
 
 bool WeightsInRange(const LinearLayer& layer) {
@@ -40,9 +44,8 @@ bool IsNarrow(const LinearLayer& layer) {
     for (std::size_t group = 0; group + 1 < layer.groups(); group += 2) {
       for (std::size_t half = 0; half < kInputsPerGroup; half += 2) {
         const std::size_t k = group * kInputsPerGroup + half;
-        const int sum = std::abs(Weight(layer, n, k)) + std::abs(Weight(layer, n, k + 1)) +
-                        std::abs(Weight(layer, n, k + kInputsPerGroup)) +
-                        std::abs(Weight(layer, n, k + kInputsPerGroup + 1));
+        const int sum = Magnitude(layer, n, k) + Magnitude(layer, n, k + 1) + Magnitude(layer, n, k + kInputsPerGroup) +
+                        Magnitude(layer, n, k + kInputsPerGroup + 1);
         if (sum > kNarrowSum) return false;
       }
     }

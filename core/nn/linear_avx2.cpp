@@ -21,41 +21,32 @@ MAPWELD_TILE_INLINE void AddPairSums(__m256i* sum, __m256i pairs) {
 }
 
 // A pair sums up to 2 * 127 * 127 < 2^15 at most; of a narrow layer two pairs do, which saves every second madd.
-template <std::size_t R, bool kNarrow, bool kSigned>
-MAPWELD_TILE_INLINE void AddTile(Tile<R>* tile, const std::int8_t* w0, const std::int8_t* w1, const std::int8_t* row,
-                                 std::size_t stride, std::size_t groups) {
-  std::size_t g = 0;
-  if constexpr (kNarrow) {
-    for (; g + 2 <= groups; g += 2) {
-      const __m256i w00 = Load(w0 + kGroupBytes * g), w01 = Load(w0 + kGroupBytes * (g + 1));
-      const __m256i w10 = Load(w1 + kGroupBytes * g), w11 = Load(w1 + kGroupBytes * (g + 1));
-      for (std::size_t r = 0; r < R; ++r) {
-        const std::int8_t* at = row + r * stride + kInputsPerGroup * g;
-        const __m256i x0 = Broadcast(at), x1 = Broadcast(at + kInputsPerGroup);
-        AddPairSums(&tile->sum[r][0], _mm256_add_epi16(PairSums<kSigned>(x0, w00), PairSums<kSigned>(x1, w01)));
-        AddPairSums(&tile->sum[r][1], _mm256_add_epi16(PairSums<kSigned>(x0, w10), PairSums<kSigned>(x1, w11)));
+struct Dot {
+  static constexpr bool kUsesNarrow = true;
+  template <std::size_t R, bool kNarrow, bool kSigned>
+  MAPWELD_TILE_INLINE static void Add(Tile<R>* tile, const std::int8_t* w0, const std::int8_t* w1,
+                                      const std::int8_t* row, std::size_t stride, std::size_t groups) {
+    std::size_t g = 0;
+    if constexpr (kNarrow) {
+      for (; g + 2 <= groups; g += 2) {
+        const __m256i w00 = Load(w0 + kGroupBytes * g), w01 = Load(w0 + kGroupBytes * (g + 1));
+        const __m256i w10 = Load(w1 + kGroupBytes * g), w11 = Load(w1 + kGroupBytes * (g + 1));
+        for (std::size_t r = 0; r < R; ++r) {
+          const std::int8_t* at = row + r * stride + kInputsPerGroup * g;
+          const __m256i x0 = Broadcast(at), x1 = Broadcast(at + kInputsPerGroup);
+          AddPairSums(&tile->sum[r][0], _mm256_add_epi16(PairSums<kSigned>(x0, w00), PairSums<kSigned>(x1, w01)));
+          AddPairSums(&tile->sum[r][1], _mm256_add_epi16(PairSums<kSigned>(x0, w10), PairSums<kSigned>(x1, w11)));
+        }
       }
     }
-  }
-  for (; g < groups; ++g) {
-    const __m256i w00 = Load(w0 + kGroupBytes * g), w10 = Load(w1 + kGroupBytes * g);
-    for (std::size_t r = 0; r < R; ++r) {
-      const __m256i x = Broadcast(row + r * stride + kInputsPerGroup * g);
-      AddPairSums(&tile->sum[r][0], PairSums<kSigned>(x, w00));
-      AddPairSums(&tile->sum[r][1], PairSums<kSigned>(x, w10));
+    for (; g < groups; ++g) {
+      const __m256i w00 = Load(w0 + kGroupBytes * g), w10 = Load(w1 + kGroupBytes * g);
+      for (std::size_t r = 0; r < R; ++r) {
+        const __m256i x = Broadcast(row + r * stride + kInputsPerGroup * g);
+        AddPairSums(&tile->sum[r][0], PairSums<kSigned>(x, w00));
+        AddPairSums(&tile->sum[r][1], PairSums<kSigned>(x, w10));
+      }
     }
-  }
-}
-
-struct Dot {
-  template <std::size_t R>
-  MAPWELD_TILE_INLINE static void Add(bool narrow, bool negative, Tile<R>* tile, const std::int8_t* w0,
-                                      const std::int8_t* w1, const std::int8_t* row, std::size_t stride,
-                                      std::size_t groups) {
-    if (narrow && !negative) return AddTile<R, true, false>(tile, w0, w1, row, stride, groups);
-    if (narrow) return AddTile<R, true, true>(tile, w0, w1, row, stride, groups);
-    if (!negative) return AddTile<R, false, false>(tile, w0, w1, row, stride, groups);
-    AddTile<R, false, true>(tile, w0, w1, row, stride, groups);
   }
 };
 

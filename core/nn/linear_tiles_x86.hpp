@@ -2,7 +2,10 @@
 // The walk over rows and outputs that the x86-64 kernels share: tiles of 4 rows x 16 outputs, whose sums stay in
 // registers. A kernel's source defines MAPWELD_TILE_TARGET (what its processor must have) before it includes this,
 // once, and gives
-//   struct Dot { template <std::size_t R> static void Add(narrow, negative, tile, w0, w1, row, stride, groups); };
+//   struct Dot {
+//     static constexpr bool kUsesNarrow;  // whether it does better on a narrow layer
+//     template <std::size_t R, bool kNarrow, bool kSigned> static void Add(tile, w0, w1, row, stride, groups);
+//   };
 // Everything here is private to that source: the same code compiled for another target must not be merged with it.
 #pragma once
 
@@ -26,8 +29,9 @@ struct Tile {
   __m256i sum[R][2];
 };
 
+// Compilers that tune for old processors split the ordinary unaligned load into two halves; this one stays whole.
 MAPWELD_TILE_INLINE __m256i Load(const void* from) {
-  return _mm256_loadu_si256(static_cast<const __m256i*>(from));
+  return _mm256_lddqu_si256(static_cast<const __m256i*>(from));
 }
 MAPWELD_TILE_INLINE __m256i Broadcast(const std::int8_t* from) {
   std::int32_t four = 0;
@@ -118,8 +122,8 @@ class StoreSums {
   std::size_t at1_ = 0;
 };
 
-template <class Dot, std::size_t R, class Store>
-MAPWELD_TILE_INLINE void OneTile(const LinearLayer& layer, std::size_t block0, std::size_t block1, bool negative,
+template <class Dot, std::size_t R, bool kNarrow, bool kSigned, class Store>
+MAPWELD_TILE_INLINE void OneTile(const LinearLayer& layer, std::size_t block0, std::size_t block1,
                                  const std::int8_t* rows, std::size_t row, const Store& store) {
   const std::size_t groups = layer.groups();
   const std::size_t stride = RowStride(layer.p.inputs);
@@ -131,9 +135,21 @@ MAPWELD_TILE_INLINE void OneTile(const LinearLayer& layer, std::size_t block0, s
     tile.sum[r][1] = bias1;
   }
   const std::int8_t* w = layer.p.weights.data();
-  Dot::template Add<R>(layer.narrow, negative, &tile, w + block0 * groups * kGroupBytes,
-                       w + block1 * groups * kGroupBytes, rows + row * stride, stride, groups);
+  Dot::template Add<R, kNarrow, kSigned>(&tile, w + block0 * groups * kGroupBytes, w + block1 * groups * kGroupBytes,
+                                         rows + row * stride, stride, groups);
   store.template Put<R>(row, tile);
+}
+
+// A tile from end to end for each kind, so that the sums need not leave their registers between.
+template <class Dot, std::size_t R, class Store>
+MAPWELD_TILE_INLINE void AnyTile(const LinearLayer& layer, std::size_t block0, std::size_t block1, bool negative,
+                                 const std::int8_t* rows, std::size_t row, const Store& store) {
+  if (Dot::kUsesNarrow && layer.narrow) {
+    if (negative) return OneTile<Dot, R, true, true>(layer, block0, block1, rows, row, store);
+    return OneTile<Dot, R, true, false>(layer, block0, block1, rows, row, store);
+  }
+  if (negative) return OneTile<Dot, R, false, true>(layer, block0, block1, rows, row, store);
+  OneTile<Dot, R, false, false>(layer, block0, block1, rows, row, store);
 }
 
 // An odd last block is computed twice, beside itself.
@@ -154,9 +170,9 @@ MAPWELD_TILE_INLINE void Walk(const LinearLayer& layer, const std::int8_t* rows,
       std::size_t row = strip;
       std::uint32_t signs = negative;
       for (; row + kTileRows <= end; row += kTileRows, signs >>= 1U) {
-        OneTile<Dot, kTileRows>(layer, block0, block1, (signs & 1U) != 0, rows, row, store);
+        AnyTile<Dot, kTileRows>(layer, block0, block1, (signs & 1U) != 0, rows, row, store);
       }
-      for (; row < end; ++row) OneTile<Dot, 1>(layer, block0, block1, (signs & 1U) != 0, rows, row, store);
+      for (; row < end; ++row) AnyTile<Dot, 1>(layer, block0, block1, (signs & 1U) != 0, rows, row, store);
     }
   }
 }

@@ -8,10 +8,12 @@ namespace {
 
 template <class Instruction>
 struct VnniDot {
+  static constexpr bool kUsesNarrow = false;
+
   // x without sign: as it is after a ReLU, else its magnitude, with the signs moved to the weights.
-  template <std::size_t R, bool kSigned>
-  MAPWELD_TILE_INLINE static void AddTile(Tile<R>* tile, const std::int8_t* w0, const std::int8_t* w1,
-                                          const std::int8_t* row, std::size_t stride, std::size_t groups) {
+  template <std::size_t R, bool kNarrow, bool kSigned>
+  MAPWELD_TILE_INLINE static void Add(Tile<R>* tile, const std::int8_t* w0, const std::int8_t* w1,
+                                      const std::int8_t* row, std::size_t stride, std::size_t groups) {
     for (std::size_t g = 0; g < groups; ++g) {
       const __m256i first = Load(w0 + kGroupBytes * g), second = Load(w1 + kGroupBytes * g);
       for (std::size_t r = 0; r < R; ++r) {
@@ -26,13 +28,6 @@ struct VnniDot {
         }
       }
     }
-  }
-  template <std::size_t R>
-  MAPWELD_TILE_INLINE static void Add(bool /*narrow*/, bool negative, Tile<R>* tile, const std::int8_t* w0,
-                                      const std::int8_t* w1, const std::int8_t* row, std::size_t stride,
-                                      std::size_t groups) {
-    if (negative) return AddTile<R, true>(tile, w0, w1, row, stride, groups);
-    AddTile<R, false>(tile, w0, w1, row, stride, groups);
   }
 };
 

@@ -20,18 +20,31 @@
 
 namespace mapweld::pipeline {
 
+// Keyframes wait for the release distance: the ring must hold them all.
+constexpr bool PendingKeyframesFit(double release_distance_m, double spacing_m) {
+  return release_distance_m / spacing_m + 2 < static_cast<double>(kCap.pending_keyframes);
+}
+
 struct AgentConfig {
+  static constexpr double kSpacing_m = 5.0;
+  static constexpr double kReleaseDistance_m = 100.0;
+  static_assert(PendingKeyframesFit(kReleaseDistance_m, kSpacing_m));
+
   lio::LioConfig lio;
   submap::RollingMapConfig submap;
   correct::LocalCorrectionConfig correction;
-  double keyframe_spacing_m = 5.0;
-  double release_distance_m = 100.0;  // travel past a keyframe before its submap is cut, so that both directions agree
-  float submap_range_m = 60.0F;       // points farther from the vehicle do not enter submaps
+  double keyframe_spacing_m = kSpacing_m;
+  double release_distance_m =
+      kReleaseDistance_m;        // travel past a keyframe before its submap is cut, so that both directions agree
+  float submap_range_m = 60.0F;  // points farther from the vehicle do not enter submaps
   DurationNs imu_patience =
       Milliseconds(200);  // of LiDAR time: how long a scan waits for the IMU samples that cover it
 };
 
-// Once per revolution.
+// Smaller submaps, sooner: rooms and corridors end nearer than streets.
+void UseIndoors(AgentConfig* config);
+
+// Once per revolution, before the submaps see it.
 struct PoseOutput {
   lio::LioUpdate odometry;
   double path_m = 0;
@@ -97,11 +110,11 @@ class AgentPipeline {
 
   void ProcessWaitingScan();
   void OnScan(const sensor::Scan& scan);
-  void FeedSubmaps();
+  void FeedSubmaps(const sensor::Scan& scan);
   void TakeKeyframeIfDue(const lio::LioUpdate& update);
   [[nodiscard]] bool Due(std::size_t pending) const;
-  void ReleaseDueKeyframes();
-  void ReleaseStep();
+  void ReleaseDueKeyframes(double step_m);
+  double ReleaseStep();  // gives its share of the work for one keyframe
 
   AgentConfig config_;
   AgentSink* sink_;
@@ -116,15 +129,19 @@ class AgentPipeline {
   geom::Pose3 last_odom_T_body_;
   double path_m_ = 0;
 
-  // The oldest pending keyframe on its way out. One step a scan, so that no scan pays for all of them.
-  enum class ReleaseStage { kCut, kDescribe, kEncode };
+  // The oldest pending keyframe on its way out, in small steps.
+  enum class ReleaseStage { kBegin, kCut, kDescribe, kEncode };
 
+  submap::RangeImage range_image_;
   submap::RollingMap rolling_map_;
   RingBuffer<PendingKeyframe, kCap.pending_keyframes> pending_;
   std::int32_t next_keyframe_ = 0;
   double next_keyframe_path_m_ = 0;
 
-  ReleaseStage release_stage_ = ReleaseStage::kCut;
+  ReleaseStage release_stage_ = ReleaseStage::kBegin;
+  double release_credit_ = 0;  // steps paid for by travel, as a share of the work for one keyframe
+  std::size_t cut_steps_ = 0;
+  bool encodable_ = false;
   KeyframeOutput release_;
   place::Describer describer_;
   submap::Submap submap_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stays of a polar image when the vehicle turns. A turn by psi multiplies angular order k of every ring by
-// exp(-2 i k psi): the power of an order does not change, nor does the product of one ring's order with the conjugate of
-// another's, which tells how the two are turned against each other.
+// exp(-2 i k psi): the power of an order does not change, nor does the product of one ring's order with the conjugate
+// of another's, which tells how the two are turned against each other.
 #pragma once
 
 #include <array>

@@ -31,7 +31,8 @@ void PlanImage::Build(const ColumnGrid& grid) {
   for (std::size_t b = 0; b < kBands; ++b) {
     for (std::size_t ring = 0; ring < kRings; ++ring) {
       for (std::size_t d = 0; d < kDirections; ++d) {
-        pixels_[b][ring][d] = static_cast<std::uint8_t>(std::min(std::floor(bands_[b][ring][d] * factor + 0.5F), 255.0F));
+        pixels_[b][ring][d] =
+            static_cast<std::uint8_t>(std::min(std::floor(bands_[b][ring][d] * factor + 0.5F), 255.0F));
       }
     }
   }

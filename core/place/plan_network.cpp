@@ -41,8 +41,8 @@ std::uint32_t Dim(std::size_t n) {
 Status ReadLayer(const nn::ModelBlob& model, std::string_view layer, const LayerShape& shape, bool requantizes,
                  nn::LinearParameters* p) {
   const std::size_t padded = nn::SumStride(shape.outputs);
-  const auto weights = model.Find<std::int8_t>(
-      Name(layer, ".weight"), {Dim(padded / 8), Dim(nn::RowStride(shape.inputs) / 4), 8, 4});
+  const auto weights =
+      model.Find<std::int8_t>(Name(layer, ".weight"), {Dim(padded / 8), Dim(nn::RowStride(shape.inputs) / 4), 8, 4});
   if (!weights.ok()) return weights.status();
   const auto bias = model.Find<std::int32_t>(Name(layer, ".bias"), {Dim(padded)});
   if (!bias.ok()) return bias.status();
@@ -77,7 +77,7 @@ Status ReadFloats(const nn::ModelBlob& model, std::string_view name, std::size_t
   if (!found.ok()) return found.status();
   *out = found.value();
   return std::all_of(out->begin(), out->end(), [](float v) { return std::isfinite(v); }) ? Status::kOk
-                                                                                          : Status::kOutOfRange;
+                                                                                         : Status::kOutOfRange;
 }
 
 }  // namespace

@@ -21,9 +21,10 @@ class ProjectionSpectrum {
 
   // Clear, then Add every column of a view, then Transform. The order of the columns does not matter.
   void Clear();
-  // weight_q8: of the column, or of a part of it; at most ColumnGrid::kMaxWeightQ8. 128 integer multiply-adds if within 35 m.
+  // weight_q8: of the column, or of a part of it; at most ColumnGrid::kMaxWeightQ8. 128 integer multiply-adds if within
+  // 35 m.
   void Add(const Column& column, std::int32_t weight_q8);
-  void Transform();                // 64 transforms of length 128: about 0.2 ms
+  void Transform();  // 64 transforms of length 128: about 0.2 ms
 
   // |F|^(3/8) at direction pi d / 128 and bin f, smoothed over neighbouring bins. f in 0..kBins - 2. The small exponent
   // keeps the few strong lines of a straight street from drowning the rest.

@@ -17,8 +17,8 @@ Status SpectrumCode::Open(const nn::ModelBlob& model) {
   gain_ = gain.value();
   const auto is_feature = [](std::int32_t i) { return i >= 0 && i < static_cast<std::int32_t>(ImageFeatures::kSize); };
   const auto is_gain = [](float v) { return std::isfinite(v); };
-  const bool sane = std::all_of(index_.begin(), index_.end(), is_feature) &&
-                    std::all_of(gain_.begin(), gain_.end(), is_gain);
+  const bool sane =
+      std::all_of(index_.begin(), index_.end(), is_feature) && std::all_of(gain_.begin(), gain_.end(), is_gain);
   return sane ? Status::kOk : Status::kOutOfRange;
 }
 

@@ -17,12 +17,6 @@ constexpr std::size_t kHeaderBytes = 4 + 1 + 2 + 2 + 4 + 8 + 4;
 constexpr std::size_t kCrcBytes = 4;
 constexpr auto kSteps = static_cast<float>(1U << kStepBits);
 
-// A node on the way down the octree. Level 8 is the root; a child of a level-1 node is a cell.
-struct Node {
-  std::uint8_t mask = 0;  // occupied children
-  std::uint8_t next = 0;  // child to visit next
-};
-
 CellContent ToContent(const SubmapPoint& p, float voxel_m) {
   const float v[3] = {p.x / voxel_m, p.y / voxel_m, p.z / voxel_m};
   CellContent content;
@@ -43,42 +37,44 @@ SubmapPoint FromContent(std::uint32_t key, const CellContent& content, float vox
   return {v[0], v[1], v[2], static_cast<std::uint16_t>(content.seen_again ? 2 : 1), 0};
 }
 
-// Goes through the occupied cells in order, the same way for encoder and decoder. The side supplies:
+// Goes on through the occupied cells in order, the same way for encoder and decoder, until at least max_points more are
+// coded: kNotReady then, kOk at the end. The side supplies:
 //   Mask(level)                 the occupied children of the node that holds the next point; the decoder knows none
 //   Content(), More(key)        the next point; does another one lie in this cell?
 //   operator()(bit, model), Even(value, bits)   code and give what holds, see submap_models.hpp
 //   Take(key, content)          one point is coded
 template <class Side>
-Status WalkOctree(SubmapModels* models, Side* side) {
-  std::array<Node, kGridLevels> path;
-  std::uint32_t key = 0;
-  unsigned depth = 0;
-  path[0] = {CodeMask(side->Mask(kGridLevels), &models->occupied[kGridLevels - 1][0], *side), 0};
-  CodedBlock block;
+Status WalkOctree(std::size_t max_points, SubmapModels* models, OctreeWalk* walk, Side* side) {
+  auto& path = walk->path;
+  if (!walk->begun) path[0] = {CodeMask(side->Mask(kGridLevels), &models->occupied[kGridLevels - 1][0], *side), 0};
+  walk->begun = true;
+  std::size_t coded = 0;
   while (true) {
-    Node& node = path[depth];
+    OctreeWalk::Node& node = path[walk->depth];
     if (node.next == 8) {
-      if (depth == 0) return Status::kOk;
-      --depth;
-      key >>= 3U;
+      if (walk->depth == 0) return Status::kOk;
+      --walk->depth;
+      walk->key >>= 3U;
       continue;
     }
+    if (coded >= max_points) return Status::kNotReady;
     const unsigned child = node.next++;
     if (((node.mask >> child) & 1U) == 0) continue;
-    if (depth + 1 < kGridLevels) {
-      const unsigned level = kGridLevels - 1 - depth;
+    if (walk->depth + 1 < kGridLevels) {
+      const unsigned level = kGridLevels - 1 - walk->depth;
       auto& model = models->occupied[level - 1][NeighboursInParent(node.mask, child)];
-      path[++depth] = {CodeMask(side->Mask(level), &model, *side), 0};
-      key = (key << 3U) | child;
-      if (depth + 1 == kGridLevels) block.Clear();
+      path[++walk->depth] = {CodeMask(side->Mask(level), &model, *side), 0};
+      walk->key = (walk->key << 3U) | child;
+      if (walk->depth + 1 == kGridLevels) walk->block.Clear();
       continue;
     }
-    const std::uint32_t cell = (key << 3U) | child;
+    const std::uint32_t cell = (walk->key << 3U) | child;
     for (bool more = true, first = true; more; first = false) {
-      const CellContent content = CodeContent(side->Content(), child, block, models, *side);
+      const CellContent content = CodeContent(side->Content(), child, walk->block, models, *side);
       const Status status = side->Take(cell, content);
       if (status != Status::kOk) return status;
-      block.Add(child, content);
+      ++coded;
+      walk->block.Add(child, content);
       more = (*side)(side->More(cell), &models->more[first ? 0 : 1]);
     }
   }
@@ -86,8 +82,8 @@ Status WalkOctree(SubmapModels* models, Side* side) {
 
 class EncoderSide {
  public:
-  EncoderSide(const Submap& submap, std::span<const std::uint32_t> keys, RangeEncoder* coder)
-      : submap_(submap), keys_(keys), coder_(coder) {}
+  EncoderSide(const Submap& submap, std::span<const std::uint32_t> keys, std::size_t* next, RangeEncoder* coder)
+      : submap_(submap), keys_(keys), next_(*next), coder_(coder) {}
 
   bool operator()(bool bit, BitModel* model) const {
     coder_->Put(bit, model);
@@ -115,8 +111,8 @@ class EncoderSide {
  private:
   const Submap& submap_;
   std::span<const std::uint32_t> keys_;
+  std::size_t& next_;
   RangeEncoder* coder_;
-  std::size_t next_ = 0;
 };
 
 class DecoderSide {
@@ -142,7 +138,7 @@ class DecoderSide {
 
 }  // namespace
 
-Result<std::size_t> SubmapEncoder::Encode(const Submap& submap, std::span<std::uint8_t> out) {
+Status SubmapEncoder::Begin(const Submap& submap, std::span<std::uint8_t> out) {
   ByteWriter writer(out);
   writer.Little(kMagic);
   writer.Little(static_cast<std::uint8_t>(submap.flushed ? 1 : 0));
@@ -152,23 +148,37 @@ Result<std::size_t> SubmapEncoder::Encode(const Submap& submap, std::span<std::u
   writer.Little(submap.t.ns);
   writer.Little(static_cast<std::uint32_t>(submap.points.size()));
   if (writer.failed()) return Status::kFull;
-  std::size_t size = writer.size();
-  if (!submap.points.empty()) {
-    for (std::size_t i = 0; i < submap.points.size(); ++i) {
-      if (!CellKey(submap.points[i], submap.voxel_m, &keys_[i])) return Status::kOutOfRange;
-      if (i > 0 && keys_[i] < keys_[i - 1]) return Status::kBadInput;
-    }
-    models_ = {};
-    RangeEncoder coder(out.subspan(size));
-    EncoderSide side(submap, std::span(keys_).first(submap.points.size()), &coder);
-    (void)WalkOctree(&models_, &side);  // cannot fail
-    size += coder.Finish();
-    if (coder.failed()) return Status::kFull;
+  for (std::size_t i = 0; i < submap.points.size(); ++i) {
+    if (!CellKey(submap.points[i], submap.voxel_m, &keys_[i])) return Status::kOutOfRange;
+    if (i > 0 && keys_[i] < keys_[i - 1]) return Status::kBadInput;
   }
-  ByteWriter crc(out.subspan(size));
-  crc.Little(Crc32(out.first(size)));
+  out_ = out;
+  next_ = 0;
+  models_ = {};
+  walk_ = {};
+  coder_ = RangeEncoder(out.subspan(writer.size()));
+  return Status::kOk;
+}
+
+Result<std::size_t> SubmapEncoder::Continue(const Submap& submap, std::size_t max_points) {
+  std::size_t size = kHeaderBytes;
+  if (!submap.points.empty()) {
+    EncoderSide side(submap, std::span(keys_).first(submap.points.size()), &next_, &coder_);
+    const Status status = WalkOctree(max_points, &models_, &walk_, &side);
+    if (status != Status::kOk) return status;  // kNotReady: it cannot fail
+    size += coder_.Finish();
+    if (coder_.failed()) return Status::kFull;
+  }
+  ByteWriter crc(out_.subspan(size));
+  crc.Little(Crc32(out_.first(size)));
   if (crc.failed()) return Status::kFull;
   return size + kCrcBytes;
+}
+
+Result<std::size_t> SubmapEncoder::Encode(const Submap& submap, std::span<std::uint8_t> out) {
+  const Status status = Begin(submap, out);
+  if (status != Status::kOk) return status;
+  return Continue(submap, submap.points.size() + 1);
 }
 
 Status DecodeSubmap(std::span<const std::uint8_t> bytes, Submap* submap) {
@@ -195,7 +205,8 @@ Status DecodeSubmap(std::span<const std::uint8_t> bytes, Submap* submap) {
   SubmapModels models;
   RangeDecoder coder(coded);
   DecoderSide side(n, &coder, submap);
-  const Status status = WalkOctree(&models, &side);
+  OctreeWalk walk;
+  const Status status = WalkOctree(n + 1, &models, &walk, &side);
   if (status != Status::kOk) return status;
   const bool whole = submap->points.size() == n && !coder.failed() && coder.read() == coded.size();
   return whole ? Status::kOk : Status::kBadInput;

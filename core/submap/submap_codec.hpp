@@ -22,9 +22,18 @@ class SubmapEncoder {
   // Cost: some 40 binary coding steps a point.
   Result<std::size_t> Encode(const Submap& submap, std::span<std::uint8_t> out);
 
+  // The same in parts: Begin once, then Continue with the same submap until it no longer says kNotReady. Each call
+  // codes at least max_points points and at most those of one cell more.
+  Status Begin(const Submap& submap, std::span<std::uint8_t> out);
+  Result<std::size_t> Continue(const Submap& submap, std::size_t max_points);
+
  private:
   std::array<std::uint32_t, kCap.submap_points> keys_{};
   SubmapModels models_;
+  OctreeWalk walk_;
+  std::size_t next_ = 0;  // point
+  std::span<std::uint8_t> out_;
+  RangeEncoder coder_{{}};
 };
 
 // 35 kB of stack. kBadInput, kVersion or kCrc on anything that SubmapEncoder did not write; *submap is then undefined

@@ -52,6 +52,20 @@ class CodedBlock {
   std::array<CellContent, 8> content_{};
 };
 
+// Where encoder and decoder are in the octree.
+struct OctreeWalk {
+  // A node on the way down. Level 8 is the root; a child of a level-1 node is a cell.
+  struct Node {
+    std::uint8_t mask = 0;  // occupied children
+    std::uint8_t next = 0;  // child to visit next
+  };
+  std::array<Node, kGridLevels> path;
+  std::uint32_t key = 0;
+  unsigned depth = 0;
+  bool begun = false;
+  CodedBlock block;
+};
+
 struct SubmapModels {
   // Occupancy of a node's eight children: by level, by which of the node's own neighbours in its parent (x, y, z) are
   // occupied, and by the bits of this mask coded before, as the path in a binary tree.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The input is the body of a record of a store, after a byte that says of which table. What a decoder accepts is
 // written again as the same bytes; a submap that an agent encoded may have other bytes for the same points.
+#include <algorithm>
+#include <span>
+
 #include "tests/fuzz/fuzz.hpp"
 #include "tools/store/record_codec.hpp"
 

@@ -28,24 +28,37 @@ double PathLength(double t_s, const StreetDriveConfig& config) {
 
 }  // namespace
 
-StreetDrive::StreetDrive(const StreetDriveConfig& config) : config_(config) {
-  (void)boxes_.TryPush({{-200, -200, -1.9F}, {600, 200, -1.85F}});  // ground
-  if (config.corridor) {
-    (void)boxes_.TryPush({{-200, 6, -1.9F}, {600, 7, 8}});
-    (void)boxes_.TryPush({{-200, -7, -1.9F}, {600, -6, 8}});
+StreetDrive::StreetDrive(const StreetDriveConfig& config) : config_(config) {}
+
+// The street never ends: what stands on it follows from the number of each 14 m of it.
+void StreetDrive::BuildAround(float x) {
+  constexpr float kBlockM = 14;
+  const auto block = static_cast<std::int64_t>(std::floor(x / kBlockM));
+  if (!boxes_.empty() && block == built_around_) return;
+  built_around_ = block;
+  boxes_.clear();
+  const auto add = [this](const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+    (void)boxes_.TryPush({low, high});
+  };
+  add({x - 200, -200, -1.9F}, {x + 200, 200, -1.85F});  // ground
+  if (config_.surroundings == Surroundings::kOpenField) return;
+  if (config_.surroundings != Surroundings::kStreet) {
+    add({x - 200, 6, -1.9F}, {x + 200, 7, 8});
+    add({x - 200, -7, -1.9F}, {x + 200, -6, 8});
+    if (config_.surroundings == Surroundings::kTunnel) add({x - 200, -7, 4}, {x + 200, 7, 5});
     return;
   }
-  for (int i = -8; i < 40; ++i) {
+  for (std::int64_t i = block - 6; i <= block + 6; ++i) {
     for (const float side : {-1.0F, 1.0F}) {
       const std::uint64_t h = HashKey(static_cast<std::uint64_t>(i + 100) * 2 + (side > 0 ? 1 : 0));
       const float depth = 8.0F + static_cast<float>(h % 5);
-      const float x = static_cast<float>(i) * 14.0F + static_cast<float>((h >> 8U) % 4);
+      const float begin = static_cast<float>(i) * kBlockM + static_cast<float>((h >> 8U) % 4);
       const float height = 4.0F + static_cast<float>((h >> 16U) % 8);
       const float near = side * depth;
       const float far = side * (depth + 9);
-      (void)boxes_.TryPush({{x, std::min(near, far), -1.9F}, {x + 9, std::max(near, far), height}});
-      const float pole = x + 11;
-      (void)boxes_.TryPush({{pole, side * 5.5F - 0.15F, -1.9F}, {pole + 0.3F, side * 5.5F + 0.15F, 4}});
+      add({begin, std::min(near, far), -1.9F}, {begin + 9, std::max(near, far), height});
+      const float pole = begin + 11;
+      add({pole, side * 5.5F - 0.15F, -1.9F}, {pole + 0.3F, side * 5.5F + 0.15F, 4});
     }
   }
 }
@@ -91,10 +104,21 @@ double StreetDrive::Noise() {  // near-Gaussian: the sum of four uniform numbers
   return sum * std::sqrt(3.0);
 }
 
-void StreetDrive::FindNearBoxes(float x) {
+// Boxes that the rays from `from` within half_width_rad of the heading may meet, seen from above: each is taken for the
+// circle around it.
+void StreetDrive::FindNearBoxes(const Eigen::Vector3f& from, double heading_rad, double half_width_rad) {
   near_boxes_.clear();
   for (const Box& box : boxes_) {
-    if (box.low.x() < x + kReachM && box.high.x() > x - kReachM) (void)near_boxes_.TryPush(box);
+    const Eigen::Vector2f centre = 0.5F * (box.low + box.high).head<2>() - from.head<2>();
+    const float radius = 0.5F * (box.high - box.low).head<2>().norm();
+    const float distance = centre.norm();
+    if (distance > kReachM + radius) continue;
+    if (distance > radius) {
+      const double off =
+          std::remainder(static_cast<double>(std::atan2(centre.y(), centre.x())) - heading_rad, 2 * std::numbers::pi);
+      if (std::abs(off) > half_width_rad + std::asin(static_cast<double>(radius / distance))) continue;
+    }
+    (void)near_boxes_.TryPush(box);
   }
 }
 
@@ -129,7 +153,11 @@ bool StreetDrive::Next(sensor::LidarPacket* packet, FixedVector<sensor::ImuSampl
   packet->t = {FromSeconds(t0).ns + 1};
   packet->azimuth_first_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480);
   packet->azimuth_last_cdeg = static_cast<std::uint16_t>((packet_ % 75) * 480 + 460);
-  FindNearBoxes(static_cast<float>(World(t0).t.x()));
+  const geom::Pose3 world_T_lidar_begin = World(t0) * kBodyTLidar;
+  BuildAround(static_cast<float>(world_T_lidar_begin.t.x()));
+  constexpr double kSweep = 2 * std::numbers::pi / 75;
+  FindNearBoxes(world_T_lidar_begin.t.cast<float>(),
+                geom::Yaw(world_T_lidar_begin.q) - (static_cast<double>(packet_ % 75) + 0.5) * kSweep, kSweep);
   for (int column = 0; column < kColumnsPerPacket; ++column) {
     const double t = t0 + column * kPacketS / kColumnsPerPacket;
     const geom::Pose3 world_T_lidar = World(t) * kBodyTLidar;

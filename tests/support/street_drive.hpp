@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A short drive along a street of boxes, as IMU samples and LiDAR packets with known truth. No files, no dependencies,
-// no heap while stepping: for tests of the agent's modules.
+// A drive along an endless street of boxes, as IMU samples and LiDAR packets with known truth. No files, no
+// dependencies, no heap while stepping: for tests of the agent's modules.
 #pragma once
 
 #include <array>
@@ -9,6 +9,13 @@
 #include "core/pipeline/agent_pipeline.hpp"
 
 namespace mapweld::test {
+
+enum class Surroundings {
+  kStreet,     // houses and poles
+  kCorridor,   // endless smooth walls: nothing fixes the position along them
+  kTunnel,     // the same with a ceiling
+  kOpenField,  // nothing but the ground: nothing fixes position in the plane and heading
+};
 
 struct StreetDriveConfig {
   double seconds = 30;
@@ -20,7 +27,7 @@ struct StreetDriveConfig {
   double accel_bias_z = 0.05;  // m/s^2
   double accel_bias_y = 0;     // taken for a tilt at the start
   double gyro_bias_z = 0.002;  // rad/s
-  bool corridor = false;       // endless smooth walls: nothing fixes the position along the street
+  Surroundings surroundings = Surroundings::kStreet;
   double imu_gap_from_s = -1;  // no IMU samples in this interval
   double imu_gap_to_s = -1;
 };
@@ -45,13 +52,15 @@ class StreetDrive {
   };
   [[nodiscard]] geom::Pose3 World(double t_s) const;
   [[nodiscard]] sensor::ImuSample Imu(double t_s);
-  void FindNearBoxes(float x);
+  void BuildAround(float x);
+  void FindNearBoxes(const Eigen::Vector3f& from, double heading_rad, double half_width_rad);
   [[nodiscard]] float Cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const;
   double Noise();
 
   StreetDriveConfig config_;
-  FixedVector<Box, 512> boxes_;
-  FixedVector<Box, 512> near_boxes_;  // within reach of the present packet
+  FixedVector<Box, 64> boxes_;
+  std::int64_t built_around_ = 0;    // this block
+  FixedVector<Box, 64> near_boxes_;  // that the present packet may meet
   std::uint64_t noise_state_ = 1;
   std::int64_t packet_ = 0;
   std::int64_t imu_ = 0;

@@ -18,8 +18,8 @@ namespace {
 using Groups = std::vector<std::vector<int>>;
 
 // The groups of the drives that are there, by their own indices.
-Groups GroupsOf(const std::vector<int>& there, const Eigen::MatrixXd& weights, double theta) {
-  Groups groups = merge::ClusterDrives(weights(there, there), theta);
+Groups GroupsOf(const std::vector<int>& there, const Eigen::MatrixXd& weights, const merge::WeightConfig& config) {
+  Groups groups = merge::ClusterDrives(weights(there, there), config);
   for (std::vector<int>& group : groups) {
     for (int& drive : group) drive = there[static_cast<std::size_t>(drive)];
     std::sort(group.begin(), group.end());
@@ -92,7 +92,7 @@ ArrivalStudy StudyArrivals(const MergedDrives& drives, const std::vector<int>& z
     std::vector<int> there;
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
       there.insert(std::upper_bound(there.begin(), there.end(), arrivals[i]), arrivals[i]);
-      const Groups groups = GroupsOf(there, weights, config.theta);
+      const Groups groups = GroupsOf(there, weights, config);
       const int number = static_cast<int>(groups.size());
       ArrivalStep& step = study.steps[i];
       step.mean_groups += static_cast<double>(number) / orders;

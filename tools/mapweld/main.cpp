@@ -11,6 +11,7 @@
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
 #include "tools/odometry/odometry_command.hpp"
+#include "tools/pose_graph/optimize_command.hpp"
 #include "tools/replay/replay_command.hpp"
 #include "tools/serve/serve_command.hpp"
 #include "tools/sim/sim_command.hpp"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   mapweld::sim::AddSimCommand(app);
   mapweld::replay::AddReplayCommand(app);
   mapweld::odometry::AddOdometryCommand(app);
+  mapweld::pose_graph::AddOptimizeCommand(app);
   mapweld::spy::AddSpyCommand(app);
   mapweld::doctor::AddDoctorCommand(app);
   try {

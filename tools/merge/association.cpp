@@ -4,12 +4,48 @@
 #include <algorithm>
 
 namespace mapweld::merge {
+namespace {
 
-std::vector<Match> Associate(const Distances& distances, const AssociationConfig& config) {
-  if (distances.rows == 0 || distances.cols == 0) return {};
-  const Likeness likeness = ComputeLikeness(distances);
-  std::vector<Match> matches = MatchSequences(likeness, config);
-  const auto add = [&](const Match& match) {
+// Drives begin where others ended, and fleets start from one yard: a few keyframes only, and incomplete ones, so less
+// likeness is asked for than anywhere else. The best entry of each corner of the matrix.
+void AddEnds(const Likeness& likeness, const AssociationConfig& config, std::vector<Match>* matches) {
+  const int height = std::min(config.end_keyframes, likeness.rows);
+  const int width = std::min(config.end_keyframes, likeness.cols);
+  for (const int first_row : {likeness.rows - height, 0}) {
+    for (const int first_col : {0, likeness.cols - width}) {
+      Match best;
+      best.score = -1;
+      best.ends = true;
+      for (int row = first_row; row < first_row + height; ++row) {
+        for (int col = first_col; col < first_col + width; ++col) {
+          const double score = likeness.Score(row, col);
+          if (score <= best.score) continue;
+          best.score = score;
+          best.a = row;
+          best.b = col;
+        }
+      }
+      if (best.score >= config.min_end_score) matches->push_back(best);
+    }
+  }
+}
+
+}  // namespace
+
+DrivePlaces CollectPlaces(const Drive& drive) {
+  DrivePlaces out;
+  out.descriptors = CollectDescriptors(drive);
+  out.sketches = MakeSketches(out.descriptors);
+  return out;
+}
+
+std::vector<Match> ProposeMatches(const Likeness& likeness, const AssociationConfig& config) {
+  if (likeness.d.empty()) return {};
+  std::vector<Match> found = MatchSequences(likeness, config);
+  for (const Match& match : MatchSingles(likeness, config)) found.push_back(match);
+  AddEnds(likeness, config, &found);
+  std::vector<Match> matches;
+  for (const Match& match : found) {
     const auto known = std::find_if(matches.begin(), matches.end(),
                                     [&](const Match& other) { return other.a == match.a && other.b == match.b; });
     if (known == matches.end()) {
@@ -17,12 +53,32 @@ std::vector<Match> Associate(const Distances& distances, const AssociationConfig
     } else {
       known->ends = known->ends || match.ends;
     }
-  };
-  for (const Match& match : MatchSingles(likeness, config)) add(match);
-  for (const int a : {distances.rows - 1, 0}) {
-    for (const int b : {0, distances.cols - 1}) add({a, b, 0, false, false, true});
   }
   return matches;
+}
+
+bool SketchesAgree(const DrivePlaces& a, const DrivePlaces& b, const AssociationConfig& config, Evidence* evidence) {
+  if (std::min(a.descriptors.count, b.descriptors.count) < config.min_sketched_keyframes) return true;
+  const int step = config.sketch_step;
+  const Likeness likeness = ComputeLikeness(CompareSketches(a.sketches, step, b.sketches));
+  *evidence = BestEvidence(likeness, std::max(1, config.max_sequence / step), step);
+  return evidence->sequence >= config.min_sketch_sequence || evidence->single >= config.min_sketch_single;
+}
+
+Association Associate(const DrivePlaces& a, const DrivePlaces& b, const AssociationConfig& config) {
+  Association out;
+  if (a.descriptors.count == 0 || b.descriptors.count == 0) return out;
+  if (!config.exact && !SketchesAgree(a, b, config, &out.evidence)) return out;
+  out.compared = true;
+  const Cosines cosines = ComputeCosines(a.descriptors, b.descriptors);
+  out.matches = ProposeMatches(ComputeLikeness(cosines), config);
+  if (!out.matches.empty()) out.difference = ToImage(cosines, 0, 0);
+  out.evidence = {};
+  for (const Match& match : out.matches) {
+    double& best = match.sequence ? out.evidence.sequence : out.evidence.single;
+    best = std::max(best, match.score);
+  }
+  return out;
 }
 
 }  // namespace mapweld::merge

@@ -3,14 +3,19 @@
 
 #include <vector>
 
-#include "tools/merge/robust_solve.hpp"
+#include "tools/merge/frame_vote.hpp"
 
 namespace mapweld::merge {
 
-// A start for all nodes: the anchor's chain stays, others are placed one after the other along a spanning tree. Each
-// pair of chains proposes the loop that most others of the pair agree with; pairs with more agreement come first.
-// Loops of weight 0.5 or less are used only for chains that no other loop reaches. Chains that no loop reaches at all
-// stay in their own frame.
-std::vector<geom::Pose3> StartAlongTree(const ChainGraph& graph, const std::vector<double>& loop_weight);
+struct ChainStart {
+  std::vector<geom::Pose3> world_T_node;
+  std::vector<int> root_of;  // per chain: the chain whose frame it was placed in
+};
+
+// A start for all nodes along a spanning tree of the votes, those with most support first: their members, and those of
+// every triple of chains that closes. The anchor's chain stays,
+// and what the votes connect to it is placed by them; every other connected part stands in the frame of its lowest
+// chain.
+ChainStart StartAlongTree(const ChainGraph& graph, const std::vector<FrameVote>& votes);
 
 }  // namespace mapweld::merge

@@ -72,7 +72,18 @@ std::vector<int> KMeans(const Eigen::MatrixXd& rows, int k) {
   return label;
 }
 
-std::vector<std::vector<int>> Split(const Eigen::MatrixXd& weights, const std::vector<int>& component, double theta) {
+// How many groups ascending eigenvalues, of which the first is 0, speak of.
+int NumberOfGroups(const Eigen::VectorXd& eigenvalues, const WeightConfig& config) {
+  int groups = 1;
+  for (int k = 2; k < static_cast<int>(eigenvalues.size()) && eigenvalues(k - 1) <= std::max(config.theta, kZero);
+       ++k) {
+    if (eigenvalues(k) >= config.eigengap * std::max(eigenvalues(k - 1), kZero)) groups = k;
+  }
+  return groups;
+}
+
+std::vector<std::vector<int>> Split(const Eigen::MatrixXd& weights, const std::vector<int>& component,
+                                    const WeightConfig& config) {
   const auto n = static_cast<Eigen::Index>(component.size());
   if (n < 2) return {component};
   Eigen::MatrixXd w(n, n);
@@ -85,8 +96,7 @@ std::vector<std::vector<int>> Split(const Eigen::MatrixXd& weights, const std::v
   const Eigen::MatrixXd laplacian =
       Eigen::MatrixXd::Identity(n, n) - inverse_root.asDiagonal() * w * inverse_root.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(laplacian);
-  int k = 0;
-  while (k < n && solver.eigenvalues()(k) <= std::max(theta, kZero)) ++k;
+  const int k = NumberOfGroups(solver.eigenvalues(), config);
   if (k < 2) return {component};
   Eigen::MatrixXd rows = solver.eigenvectors().leftCols(k);
   rows.rowwise().normalize();
@@ -104,12 +114,12 @@ std::vector<std::vector<int>> Split(const Eigen::MatrixXd& weights, const std::v
 
 }  // namespace
 
-std::vector<std::vector<int>> ClusterDrives(const Eigen::MatrixXd& weights, double theta) {
+std::vector<std::vector<int>> ClusterDrives(const Eigen::MatrixXd& weights, const WeightConfig& config) {
   std::vector<int> all;
   for (int i = 0; i < static_cast<int>(weights.rows()); ++i) all.push_back(i);
   std::vector<std::vector<int>> groups;
   for (const std::vector<int>& component : Components(weights, all)) {
-    for (std::vector<int>& group : Split(weights, component, theta)) groups.push_back(std::move(group));
+    for (std::vector<int>& group : Split(weights, component, config)) groups.push_back(std::move(group));
   }
   std::sort(groups.begin(), groups.end(), [](const std::vector<int>& x, const std::vector<int>& y) {
     return x.size() != y.size() ? x.size() > y.size() : x.front() < y.front();

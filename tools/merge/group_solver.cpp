@@ -12,34 +12,49 @@ namespace {
 
 using geom::Pose3;
 using geom::Vec6d;
+using pose_graph::Edge;
+
+geom::Mat6d InformationOf(double sigma_m, double sigma_tilt_rad, double sigma_yaw_rad) {
+  Vec6d sigma;
+  sigma << sigma_m, sigma_m, sigma_m, sigma_tilt_rad, sigma_tilt_rad, sigma_yaw_rad;
+  return pose_graph::InformationOf(sigma);
+}
 
 // Errors of the odometry grow with the root of the path.
-GraphEdge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const GraphConfig& config) {
+Edge OdometryEdge(const Keyframe& from, const Keyframe& to, int node, const GraphConfig& config) {
   constexpr double kStep_m = 5;
   const double growth = std::sqrt(std::clamp((to.path_m - from.path_m) / kStep_m, 0.2, 100.0));
-  GraphEdge edge;
+  Edge edge;
   edge.a = node;
   edge.b = node + 1;
   edge.a_T_b = from.odom_T_body.Inverse() * to.odom_T_body;
-  edge.sigma.head<3>().setConstant(config.odometry_sigma_m * growth);
-  edge.sigma[3] = edge.sigma[4] = config.odometry_sigma_tilt_rad * growth;
-  edge.sigma[5] = config.odometry_sigma_yaw_rad * growth;
+  edge.information = InformationOf(config.odometry_sigma_m * growth, config.odometry_sigma_tilt_rad * growth,
+                                   config.odometry_sigma_yaw_rad * growth);
   return edge;
 }
 
-GraphEdge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
-                   const GraphConfig& config) {
+Edge LoopEdge(const Keyframe& a, const Keyframe& b, const Loop& loop, int node_a, int node_b,
+              const GraphConfig& config) {
   // From level frames to body frames.
   const Pose3 body_T_level_a = a.odom_T_body.Inverse() * geom::Level(a.odom_T_body);
   const Pose3 body_T_level_b = b.odom_T_body.Inverse() * geom::Level(b.odom_T_body);
-  GraphEdge edge;
+  Edge edge;
   edge.a = node_a;
   edge.b = node_b;
   edge.a_T_b = body_T_level_a * loop.a_T_b * body_T_level_b.Inverse();
-  edge.sigma.head<3>().setConstant(config.loop_sigma_m);
-  edge.sigma[3] = edge.sigma[4] = config.loop_sigma_tilt_rad;
-  edge.sigma[5] = config.loop_sigma_yaw_rad;
+  edge.information = InformationOf(config.loop_sigma_m, config.loop_sigma_tilt_rad, config.loop_sigma_yaw_rad);
   return edge;
+}
+
+const Keyframe& KeyframeOf(const std::vector<Drive>& drives, int drive, int keyframe) {
+  return drives[static_cast<std::size_t>(drive)].keyframes[static_cast<std::size_t>(keyframe)];
+}
+
+RobustConfig RobustConfigOf(const GraphConfig& config) {
+  RobustConfig out;
+  out.max_iterations = config.max_iterations;
+  out.min_places = 1;  // registration and the walk along the overlap have verified every pair
+  return out;
 }
 
 }  // namespace
@@ -66,18 +81,14 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
     const auto b = first_node.find(overlap.drive_b);
     if (!overlap.accepted || a == first_node.end() || b == first_node.end()) continue;
     for (Loop& loop : overlap.loops) {
-      const Keyframe& keyframe_a =
-          drives[static_cast<std::size_t>(overlap.drive_a)].keyframes[static_cast<std::size_t>(loop.keyframe_a)];
-      const Keyframe& keyframe_b =
-          drives[static_cast<std::size_t>(overlap.drive_b)].keyframes[static_cast<std::size_t>(loop.keyframe_b)];
+      const Keyframe& keyframe_a = KeyframeOf(drives, overlap.drive_a, loop.keyframe_a);
+      const Keyframe& keyframe_b = KeyframeOf(drives, overlap.drive_b, loop.keyframe_b);
       graph.loops.push_back(
           LoopEdge(keyframe_a, keyframe_b, loop, a->second + loop.keyframe_a, b->second + loop.keyframe_b, config));
       used.push_back(&loop);
     }
   }
-  RobustConfig robust;
-  robust.max_iterations = config.max_iterations;
-  const RobustResult solved = SolveRobust(graph, robust);
+  const RobustResult solved = SolveRobust(graph, RobustConfigOf(config));
   for (std::size_t i = 0; i < used.size(); ++i) used[i]->weight = solved.loop_weight[i];
   GroupSolution out;
   for (const int drive : group) {
@@ -86,6 +97,20 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
         begin, begin + static_cast<std::ptrdiff_t>(drives[static_cast<std::size_t>(drive)].keyframes.size()));
   }
   return out;
+}
+
+std::size_t LoopsThatFit(const std::vector<Drive>& drives, const Overlap& overlap,
+                         const std::vector<std::vector<Pose3>>& merged_T_body, const GraphConfig& config) {
+  std::size_t fit = 0;
+  for (const Loop& loop : overlap.loops) {
+    const std::vector<Pose3> ends = {
+        merged_T_body[static_cast<std::size_t>(overlap.drive_a)][static_cast<std::size_t>(loop.keyframe_a)],
+        merged_T_body[static_cast<std::size_t>(overlap.drive_b)][static_cast<std::size_t>(loop.keyframe_b)]};
+    const Edge edge = LoopEdge(KeyframeOf(drives, overlap.drive_a, loop.keyframe_a),
+                               KeyframeOf(drives, overlap.drive_b, loop.keyframe_b), loop, 0, 1, config);
+    fit += pose_graph::Chi2(ends, edge) <= RobustConfigOf(config).inlier_chi2 ? 1U : 0U;
+  }
+  return fit;
 }
 
 }  // namespace mapweld::merge

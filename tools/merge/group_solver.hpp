@@ -19,4 +19,9 @@ struct GroupSolution {
 GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
                          std::vector<Overlap>* overlaps);
 
+// How many loops of the overlap agree with these poses of its drives (per drive and keyframe, in one frame), as the
+// solver would judge them.
+std::size_t LoopsThatFit(const std::vector<Drive>& drives, const Overlap& overlap,
+                         const std::vector<std::vector<geom::Pose3>>& merged_T_body, const GraphConfig& config);
+
 }  // namespace mapweld::merge

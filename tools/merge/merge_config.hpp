@@ -8,10 +8,17 @@ namespace mapweld::merge {
 
 // Which keyframes of two drives could show the same place.
 struct AssociationConfig {
+  bool exact = false;                // compare every pair of drives in full, whatever the sketches say
+  int sketch_step = 1;               // keyframes from one sketch of the first drive that is compared to the next
+  int min_sketched_keyframes = 24;   // a shorter drive is always compared in full: its mean would hide its places
+  double min_sketch_sequence = 5.0;  // robust standard deviations; from here on a pair is compared in full
+  double min_sketch_single = 5.5;
   int min_sequence = 4;  // keyframes; shorter lines of matches are left to the single matches
   int max_sequence = 16;
   double min_sequence_score = 3.5;  // robust standard deviations above what unrelated stretches reach
   double min_single_score = 2.0;    // the same for one keyframe
+  double min_end_score = 2.0;       // the same where drives begin and end
+  int end_keyframes = 4;            // that count as an end
   int max_sequence_matches = 24;    // per pair of drives
   int max_single_matches = 16;      // per pair of drives
 };
@@ -54,7 +61,8 @@ struct VerifyConfig {
 
 struct WeightConfig {
   double half_weight_overlap_m = 10;  // the shared length with omega = 1/2; C_omega of eq. 9 follows
-  double theta = 0.02;                // greatest eigenvalue of the normalised Laplacian that still counts as a cluster
+  double theta = 0.02;                // greatest eigenvalue of the normalised Laplacian that may count as a cluster
+  double eigengap = 8;                // how many times as large the next one must be; a line of drives has at most 4
 };
 
 struct GraphConfig {
@@ -67,6 +75,7 @@ struct GraphConfig {
   double loop_sigma_tilt_rad = 0.01;
   int max_iterations = 40;
   double min_mean_weight = 0.4;  // of the loops of an overlap; below, the pose graph speaks against it
+  int quarantine_after = 3;      // withdrawn overlaps of one drive
 };
 
 struct RefineConfig {

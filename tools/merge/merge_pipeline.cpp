@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 
-#include "tools/merge/clustering.hpp"
 #include "tools/merge/cycle_check.hpp"
-#include "tools/merge/group_solver.hpp"
+#include "tools/merge/grouping.hpp"
 #include "tools/merge/parallel.hpp"
 
 namespace mapweld::merge {
@@ -33,6 +34,14 @@ void CheckDrives(const std::vector<Drive>& drives) {
   }
 }
 
+// A pair of drives on its way from association to registration.
+struct Pair {
+  int a = 0;
+  int b = 0;
+  Association association;
+  std::optional<PairOutcome> known;  // from the last merge
+};
+
 class Merge {
  public:
   Merge(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config, Progress* progress,
@@ -40,6 +49,7 @@ class Merge {
       : drives_(drives), config_(config), submaps_(&submaps), progress_(progress), cache_(cache) {}
 
   MergeResult Run() {
+    Time("association", [&] { AssociatePairs(); });
     Time("pairs", [&] { SearchPairs(); });
     Time("cycles", [&] { CheckCycles(drives_, config_.verify, &out_.overlaps); });
     Time("groups", [&] { GroupAndSolve(); });
@@ -47,80 +57,56 @@ class Merge {
       Time("refine", [&] { Refine(round); });
       Time("groups", [&] { GroupAndSolve(); });
     }
+    Time("recall", [&] {
+      if (RecallOverlaps(drives_, config_, &out_)) GroupAndSolve();
+    });
     Finish();
     return std::move(out_);
   }
 
  private:
-  // Difference matrix, sequences, zones, registration: every pair of drives on its own.
+  // Sketches, difference matrices, sequences: every pair of drives on its own, one job per drive and all those after
+  // it.
+  void AssociatePairs() {
+    const std::size_t n = drives_.size();
+    places_.resize(n);
+    InParallel("association", n, [&](std::size_t i) { places_[i] = CollectPlaces(drives_[i]); });
+    std::vector<std::vector<Pair>> found(n);
+    InParallel("association", n, [&](std::size_t a) {
+      for (std::size_t b = a + 1; b < n; ++b) {
+        Pair pair{static_cast<int>(a), static_cast<int>(b), {}, {}};
+        if (cache_ != nullptr) pair.known = cache_->FindPair(drives_, pair.a, pair.b, &submaps_);
+        if (!pair.known.has_value()) pair.association = Associate(places_[a], places_[b], config_.association);
+        if (pair.known.has_value() || !pair.association.matches.empty() || cache_ != nullptr) {
+          found[a].push_back(std::move(pair));
+        }
+      }
+    });
+    for (std::vector<Pair>& of_drive : found) std::move(of_drive.begin(), of_drive.end(), std::back_inserter(pairs_));
+  }
+
+  // Zones and registration, of pairs with matches.
   void SearchPairs() {
-    std::vector<std::pair<int, int>> pairs;
-    for (int a = 0; a < static_cast<int>(drives_.size()); ++a) {
-      for (int b = a + 1; b < static_cast<int>(drives_.size()); ++b) pairs.emplace_back(a, b);
-    }
-    std::vector<PairOutcome> outcomes(pairs.size());
-    InParallel("pairs", pairs.size(), [&](std::size_t i) {
-      const auto [a, b] = pairs[i];
-      std::optional<PairOutcome> known;
-      if (cache_ != nullptr) known = cache_->FindPair(drives_, a, b, &submaps_);
-      outcomes[i] = known.has_value() ? std::move(*known) : SearchPair(drives_, a, b, &submaps_, config_);
+    std::vector<PairOutcome> outcomes(pairs_.size());
+    InParallel("pairs", pairs_.size(), [&](std::size_t i) {
+      Pair& pair = pairs_[i];
+      outcomes[i] = pair.known.has_value() ? std::move(*pair.known)
+                                           : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
     });
     for (PairOutcome& outcome : outcomes) {
       if (cache_ != nullptr) cache_->StorePair(drives_, outcome);
       NoteMissing(outcome.asked);
-      if (!outcome.proposed && !outcome.overlap.accepted) continue;
+      if (!outcome.proposed) continue;
       out_.overlaps.push_back(std::move(outcome.overlap));
       differences_[{out_.overlaps.back().drive_a, out_.overlaps.back().drive_b}] = std::move(outcome.difference);
     }
   }
 
-  // Groups by omega, one pose graph per group; overlaps that the pose graph does not believe are withdrawn, after which
-  // the groups may be others.
   void GroupAndSolve() {
-    const auto n = static_cast<Eigen::Index>(drives_.size());
-    for (bool settled = false; !settled;) {
-      Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, n);
-      for (const Overlap& overlap : out_.overlaps) {
-        if (overlap.accepted)
-          weights(overlap.drive_a, overlap.drive_b) = weights(overlap.drive_b, overlap.drive_a) = overlap.weight;
-      }
-      out_.groups = ClusterDrives(weights, config_.weight.theta);
-      out_.group_of.assign(drives_.size(), 0);
-      out_.merged_T_body.assign(drives_.size(), {});
-      for (std::size_t g = 0; g < out_.groups.size(); ++g) {
-        for (const int drive : out_.groups[g]) out_.group_of[static_cast<std::size_t>(drive)] = static_cast<int>(g);
-      }
-      InParallel("groups", out_.groups.size(), [&](std::size_t g) { SolveOne(out_.groups[g]); });
-      settled = !WithdrawDisbelieved();
-    }
-  }
-
-  void SolveOne(const std::vector<int>& group) {
-    if (group.size() == 1) {
-      const auto drive = static_cast<std::size_t>(group.front());
-      for (const Keyframe& keyframe : drives_[drive].keyframes)
-        out_.merged_T_body[drive].push_back(keyframe.odom_T_body);
-      return;
-    }
-    GroupSolution solution = SolveGroup(drives_, group, config_.graph, &out_.overlaps);
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      out_.merged_T_body[static_cast<std::size_t>(group[i])] = std::move(solution.merged_T_body[i]);
-    }
-  }
-
-  bool WithdrawDisbelieved() {
-    bool any = false;
-    for (Overlap& overlap : out_.overlaps) {
-      if (!overlap.accepted || !InOneGroup(overlap.drive_a, overlap.drive_b)) continue;
-      double sum = 0;
-      for (const Loop& loop : overlap.loops) sum += loop.weight;
-      if (sum >= config_.graph.min_mean_weight * static_cast<double>(overlap.loops.size())) continue;
-      overlap.accepted = false;
-      overlap.test = "pose graph";
-      overlap.weight = 0;
-      any = true;
-    }
-    return any;
+    merge::GroupAndSolve(
+        drives_, config_,
+        [this](std::size_t count, const std::function<void(std::size_t)>& job) { InParallel("groups", count, job); },
+        &out_);
   }
 
   // Loops that the estimate makes visible, between all drives of a group that now come near each other.
@@ -175,7 +161,7 @@ class Merge {
         overlap = &out_.overlaps.back();
         overlap->drive_a = a;
         overlap->drive_b = b;
-      } else if (overlap->test == "cycle" || overlap->test == "pose graph") {
+      } else if (overlap->test == "cycle" || overlap->test == "pose graph" || overlap->test == "quarantine") {
         return;
       }
       overlap->accepted = true;
@@ -205,9 +191,6 @@ class Merge {
     const auto at = std::find_if(out_.overlaps.begin(), out_.overlaps.end(),
                                  [&](const Overlap& o) { return o.drive_a == a && o.drive_b == b; });
     return at == out_.overlaps.end() ? nullptr : &*at;
-  }
-  [[nodiscard]] bool InOneGroup(int a, int b) const {
-    return out_.group_of[static_cast<std::size_t>(a)] == out_.group_of[static_cast<std::size_t>(b)];
   }
   void NoteMissing(const std::map<SubmapKey, bool>& asked) {
     for (const auto& [key, found] : asked) {
@@ -241,6 +224,8 @@ class Merge {
   MergeCache* cache_;
   MergeResult out_;
   std::map<std::pair<int, int>, DifferenceMatrix> differences_;
+  std::vector<DrivePlaces> places_;  // per drive
+  std::vector<Pair> pairs_;          // that are worth a look
   std::set<SubmapKey> missing_;
 };
 

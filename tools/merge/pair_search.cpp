@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/merge/association.hpp"
 #include "tools/merge/overlap_search.hpp"
 #include "tools/merge/overlap_weight.hpp"
 
@@ -79,22 +78,23 @@ void Summarise(const std::vector<Drive>& drives, const MergeConfig& config, Over
                    geom::Level(At(b, middle.keyframe_b).odom_T_body).Inverse();
 }
 
-PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
-                       const MergeConfig& config) {
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Association& association,
+                       PreparedCache* submaps, const MergeConfig& config) {
   const Drive& drive_a = drives[static_cast<std::size_t>(a)];
   const Drive& drive_b = drives[static_cast<std::size_t>(b)];
   PairOutcome out;
   out.overlap.drive_a = a;
   out.overlap.drive_b = b;
-  const Distances distances = ComputeDistances(drive_a, drive_b);
-  out.difference = ToImage(distances, a, b);
-  const std::vector<Match> matches = Associate(distances, config.association);
-  for (const Match& match : matches) {
-    if (!match.ends || match.score > 0) out.overlap.matches.emplace_back(match.a, match.b);
-  }
-  out.proposed = !out.overlap.matches.empty();
+  out.overlap.test = "no likeness";
+  for (const Match& match : association.matches) out.overlap.matches.emplace_back(match.a, match.b);
+  out.proposed = !association.matches.empty();
+  if (!out.proposed) return out;
+  out.difference = association.difference;
+  out.difference.drive_a = a;
+  out.difference.drive_b = b;
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
-  const Hypothesis found = FindOverlap(&finder, FindZones(drive_a, drive_b, matches, config.zones), config.verify);
+  const Hypothesis found =
+      FindOverlap(&finder, FindZones(drive_a, drive_b, association.matches, config.zones), config.verify);
   out.asked = finder.asked();
   out.overlap.accepted = found.test.empty();
   out.overlap.test = found.test.empty() ? "registration" : found.test;
@@ -103,6 +103,13 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedC
   out.evidence = found.evidence;
   Summarise(drives, config, &out.overlap);
   return out;
+}
+
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
+                       const MergeConfig& config) {
+  const DrivePlaces places_a = CollectPlaces(drives[static_cast<std::size_t>(a)]);
+  const DrivePlaces places_b = CollectPlaces(drives[static_cast<std::size_t>(b)]);
+  return SearchPair(drives, a, b, Associate(places_a, places_b, config.association), submaps, config);
 }
 
 }  // namespace mapweld::merge

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything about one pair of drives: association, zones, verification. Pairs do not depend on each other.
+// What one pair of drives has in common, from its matches on: zones, registration. Pairs do not depend on each other.
 #pragma once
 
 #include <map>
 
+#include "tools/merge/association.hpp"
 #include "tools/merge/loop_finder.hpp"
 #include "tools/merge/merge_config.hpp"
 #include "tools/merge/merge_result.hpp"
@@ -11,13 +12,16 @@
 namespace mapweld::merge {
 
 struct PairOutcome {
-  Overlap overlap;        // accepted or not, with the loops; weight not yet set
-  bool proposed = false;  // association had something to say beyond the drives' ends
-  double evidence = 0;    // of the accepted loops, summed
-  DifferenceMatrix difference;
+  Overlap overlap;                  // accepted or not, with the loops; weight not yet set
+  bool proposed = false;            // association had something to say
+  double evidence = 0;              // of the accepted loops, summed
+  DifferenceMatrix difference;      // when proposed
   std::map<SubmapKey, bool> asked;  // submaps wanted, and whether they were there
 };
 
+PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Association& association,
+                       PreparedCache* submaps, const MergeConfig& config);
+// For one pair alone: its association first.
 PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, PreparedCache* submaps,
                        const MergeConfig& config);
 

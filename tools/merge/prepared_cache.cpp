@@ -10,6 +10,11 @@ std::shared_ptr<const PreparedSubmap> PreparedCache::Get(SubmapKey key) {
   std::shared_ptr<const SubmapCloud> cloud;
   {
     const std::lock_guard lock(mutex_);
+    const auto known = slots_.find(key);
+    if (known != slots_.end() && known->second->ready) {
+      known->second->last_use = ++uses_;
+      return known->second->prepared;
+    }
     cloud = source_->Find(key);
     if (cloud == nullptr) return nullptr;
     std::shared_ptr<Slot>& at = slots_[key];
@@ -22,7 +27,10 @@ std::shared_ptr<const PreparedSubmap> PreparedCache::Get(SubmapKey key) {
       }));
     }
   }
-  std::call_once(slot->once, [&] { slot->prepared = std::make_shared<const PreparedSubmap>(*cloud); });
+  std::call_once(slot->once, [&] {
+    slot->prepared = std::make_shared<const PreparedSubmap>(*cloud);
+    slot->ready = true;
+  });
   return slot->prepared;
 }
 

@@ -14,5 +14,7 @@ std::vector<io::StampedPose> Trajectory(const OdometryRun& run);
 
 // Errors against `truth` (world_T_body; empty: left out), time per scan, degenerate and uncorrected scans, submaps.
 std::string Report(const OdometryRun& run, const std::vector<io::StampedPose>& truth);
+// The same figures with one entry per scan, as JSON.
+std::string ReportJson(const OdometryRun& run, const std::vector<io::StampedPose>& truth);
 
 }  // namespace mapweld::odometry

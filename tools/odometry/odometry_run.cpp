@@ -21,15 +21,21 @@ class AgentRun final : public SensorSink, public pipeline::AgentSink {
       : agent_(std::make_unique<pipeline::AgentPipeline>(config, this)) {}
 
   void OnImu(const sensor::ImuSample& sample) override {
-    Timed([&] { agent_->OnImu(sample); });
+    begin_ms_ = ThreadCpuMs();
+    agent_->OnImu(sample);
+    Book();
   }
   void OnPacket(const sensor::LidarPacket& packet) override {
-    Timed([&] { agent_->OnPacket(packet); });
+    begin_ms_ = ThreadCpuMs();
+    agent_->OnPacket(packet);
+    Book();
   }
-  void OnPose(const pipeline::PoseOutput& pose) override { run_.scans.push_back({pose.odometry, 0}); }
+  void OnPose(const pipeline::PoseOutput& pose) override {
+    run_.scans.push_back({pose.odometry, waiting_ms_ + ThreadCpuMs() - begin_ms_, 0});
+  }
   void OnKeyframe(const pipeline::KeyframeOutput& keyframe) override {
-    run_.submap_bytes.push_back(keyframe.encoded.size());
-    run_.submap_points.push_back(keyframe.submap_points);
+    run_.keyframes.push_back({keyframe.t, keyframe.flushed, keyframe.submap_points,
+                              std::vector<std::uint8_t>(keyframe.encoded.begin(), keyframe.encoded.end())});
   }
 
   OdometryRun Finish() {
@@ -39,15 +45,19 @@ class AgentRun final : public SensorSink, public pipeline::AgentSink {
   }
 
  private:
-  template <typename Call>
-  void Timed(const Call& call) {
-    const std::size_t before = run_.scans.size();
-    const double begin = ThreadCpuMs();
-    call();
-    if (run_.scans.size() != before) run_.scans.back().cpu_ms = ThreadCpuMs() - begin;
+  // What the packets and samples of a scan cost before it was complete is part of its cost.
+  void Book() {
+    waiting_ms_ += ThreadCpuMs() - begin_ms_;
+    if (run_.scans.size() == booked_) return;
+    run_.scans.back().cpu_ms = waiting_ms_;
+    booked_ = run_.scans.size();
+    waiting_ms_ = 0;
   }
 
   std::unique_ptr<pipeline::AgentPipeline> agent_;
+  double begin_ms_ = 0;    // of the present call
+  double waiting_ms_ = 0;  // calls since the last scan
+  std::size_t booked_ = 0;
   OdometryRun run_;
 };
 
@@ -74,6 +84,7 @@ OdometryRun RunClouds(const io::RecordingFolder& folder, const lio::LioConfig& c
       continue;
     }
     record.cpu_ms = ThreadCpuMs() - begin;
+    record.odometry_ms = record.cpu_ms;
     ++run.counters.scans;
     run.scans.push_back(record);
   }

@@ -2,6 +2,7 @@
 // The agent's odometry over a whole recording, with what each scan cost.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -15,14 +16,21 @@ namespace mapweld::odometry {
 
 struct ScanRecord {
   lio::LioUpdate update;
-  double cpu_ms = 0;  // of this thread, for the scan and everything that followed from it
+  double odometry_ms = 0;  // CPU time of this thread: samples, packets and the scan itself, until its pose was known
+  double cpu_ms = 0;       // the same with submaps and keyframes
+};
+
+struct KeyframeRecord {
+  TimeNs t;
+  bool flushed = false;
+  std::size_t points = 0;             // of its submap
+  std::vector<std::uint8_t> encoded;  // the submap as it would be sent
 };
 
 struct OdometryRun {
   std::vector<ScanRecord> scans;
   pipeline::AgentCounters counters;
-  std::vector<std::size_t> submap_bytes;   // encoded, one per keyframe
-  std::vector<std::size_t> submap_points;  // one per keyframe
+  std::vector<KeyframeRecord> keyframes;
 };
 
 // The whole agent (odometry, submaps, descriptors) on a drive's sensors. `faults` may put something between the

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <unordered_map>
 
+#include "core/base/voxel_key.hpp"
 #include "tools/report/palette.hpp"
 
 namespace mapweld::report {
@@ -15,22 +15,52 @@ namespace {
 // 21 bits per axis, z slowest, so that keys sort by position.
 constexpr std::int64_t kHalfRange = 1 << 20;
 
-struct VoxelHash {
-  std::size_t operator()(std::uint64_t key) const {
-    key ^= key >> 33U;
-    key *= 0xFF51AFD7ED558CCDULL;
-    return key ^ (key >> 33U);
-  }
-};
-
 struct Voxel {
-  Eigen::Vector3f offset_sum =
-      Eigen::Vector3f::Zero();  // from the voxel's corner: keeps floats exact far from the origin
-  std::uint32_t count = 0;
+  std::uint64_t key = 0;
+  Eigen::Vector3f offset_sum = Eigen::Vector3f::Zero();  // from the corner: keeps floats exact far from the origin
+  std::uint32_t count = 0;                               // 0: free
   int drive = 0;
 };
 
-using VoxelTable = std::unordered_map<std::uint64_t, Voxel, VoxelHash>;
+// Open addressing; doubles when three quarters are taken.
+class VoxelTable {
+ public:
+  VoxelTable() : voxels_(std::size_t{1} << 16U) {}
+
+  Voxel& At(std::uint64_t key) {
+    if (4 * used_ > 3 * voxels_.size()) Grow();
+    Voxel& voxel = voxels_[Find(key)];
+    if (voxel.count == 0) {
+      voxel.key = key;
+      ++used_;
+    }
+    return voxel;
+  }
+  // By rising key; the table is empty afterwards.
+  std::vector<Voxel> Take() {
+    std::erase_if(voxels_, [](const Voxel& voxel) { return voxel.count == 0; });
+    std::sort(voxels_.begin(), voxels_.end(), [](const Voxel& x, const Voxel& y) { return x.key < y.key; });
+    return std::move(voxels_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t Find(std::uint64_t key) const {
+    const std::size_t mask = voxels_.size() - 1;
+    std::size_t slot = HashKey(key) & mask;
+    while (voxels_[slot].count != 0 && voxels_[slot].key != key) slot = (slot + 1) & mask;
+    return slot;
+  }
+  void Grow() {
+    std::vector<Voxel> old(2 * voxels_.size());
+    old.swap(voxels_);
+    for (const Voxel& voxel : old) {
+      if (voxel.count != 0) voxels_[Find(voxel.key)] = voxel;
+    }
+  }
+
+  std::vector<Voxel> voxels_;
+  std::size_t used_ = 0;
+};
 
 void AddPoint(const Eigen::Vector3d& p_merged, double voxel_m, int drive, VoxelTable* table) {
   const Eigen::Vector3d cell = (p_merged / voxel_m).array().floor();
@@ -39,13 +69,14 @@ void AddPoint(const Eigen::Vector3d& p_merged, double voxel_m, int drive, VoxelT
   for (const Eigen::Index axis : {2, 1, 0}) {
     key = (key << 21U) | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell(axis)) + kHalfRange);
   }
-  Voxel& voxel = (*table)[key];
+  Voxel& voxel = table->At(key);
   if (voxel.count == 0) voxel.drive = drive;
   voxel.offset_sum += (p_merged - cell * voxel_m).cast<float>();
   ++voxel.count;
 }
 
-MapPoint Mean(std::uint64_t key, const Voxel& voxel, double voxel_m) {
+MapPoint Mean(const Voxel& voxel, double voxel_m) {
+  std::uint64_t key = voxel.key;
   constexpr std::uint64_t kMask = (1U << 21U) - 1;
   Eigen::Vector3d corner;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -77,13 +108,8 @@ std::vector<MapPoint> BuildGroupMap(const std::vector<merge::Drive>& drives, con
       }
     }
   }
-  std::vector<std::uint64_t> keys;
-  keys.reserve(table.size());
-  for (const auto& [key, voxel] : table) keys.push_back(key);
-  std::sort(keys.begin(), keys.end());
   std::vector<MapPoint> points;
-  points.reserve(keys.size());
-  for (const std::uint64_t key : keys) points.push_back(Mean(key, table.find(key)->second, voxel_m));
+  for (const Voxel& voxel : table.Take()) points.push_back(Mean(voxel, voxel_m));
   return points;
 }
 

@@ -26,9 +26,6 @@ constexpr double kKeyframeSpacing_m = 5;
 constexpr double kReleaseDistance_m = 100;
 constexpr float kSubmapRange_m = 60;
 
-constexpr std::int64_t kRevolution_ns = 100'000'000;
-constexpr std::int64_t kPacketsPerScan = 75;  // of a revolution's 75.4
-
 class LcmLog {
  public:
   LcmLog(const std::filesystem::path& path, std::int16_t agent_id)
@@ -164,10 +161,10 @@ class Publisher {
 
 }  // namespace
 
-AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motion, const AgentLogSpec& spec,
-                             const std::filesystem::path& log, const std::filesystem::path& truth,
-                             const std::function<void(double)>& progress) {
-  const LidarSimulator lidar(caster, motion, spec.lidar, spec.start_past_hour_ns, spec.seed);
+AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
+                             const AgentLogSpec& spec, const std::filesystem::path& log,
+                             const std::filesystem::path& truth, const std::function<void(double)>& progress) {
+  const LidarSimulator lidar(caster, motion, traffic, spec.lidar, spec.weather, spec.start_past_hour_ns, spec.seed);
   DriftingOdometry odometry(spec.odometry, spec.seed);
   Publisher publisher(spec, log);
   OutputFile truth_file(truth);
@@ -182,8 +179,8 @@ AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motio
     now = {spec.start_past_hour_ns + i * kRevolution_ns};
     const geom::Pose3 odom_T_body = odometry.Next(world_T_body);
     points.clear();
-    const std::int64_t first = i * kRevolution_ns / Vlp16::kPacketPeriod_ns;
-    for (std::int64_t packet = first; packet < first + kPacketsPerScan; ++packet) lidar.AppendPoints(packet, &points);
+    const std::int64_t first = i * kRevolution_ns / spec.lidar.column_ns;
+    for (std::int64_t c = first; c < first + lidar.ColumnsPerRevolution(); ++c) lidar.AppendPoints(c, &points);
     const geom::Pose3 odom_T_world = odom_T_body * world_T_body.Inverse();
     for (Eigen::Vector3f& p : points) p = (odom_T_world * geom::Vec3d(p.cast<double>())).cast<float>();
     publisher.OnScan(now, odom_T_body, points);

@@ -18,7 +18,8 @@ struct AgentLogSpec {
   std::int64_t start_past_hour_ns = 0;
   double duration_s = 0;
   std::uint64_t seed = 0;
-  LidarModel lidar;
+  LidarModel lidar = LidarByName("vlp16");
+  Weather weather;
   OdometryModel odometry;
   double scan_spacing_m = 1.5;  // a real agent has a scan every metre at 36 km/h
 };
@@ -31,8 +32,8 @@ struct AgentLogCounts {
 
 // Writes `log` (LCM) and `truth` (TUM: world_T_body at every scan). `progress` gets shares from 0 to 1. Throws
 // std::runtime_error when a file cannot be written. Memory: about 12 MB.
-AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motion, const AgentLogSpec& spec,
-                             const std::filesystem::path& log, const std::filesystem::path& truth,
-                             const std::function<void(double)>& progress);
+AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
+                             const AgentLogSpec& spec, const std::filesystem::path& log,
+                             const std::filesystem::path& truth, const std::function<void(double)>& progress);
 
 }  // namespace mapweld::sim

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 
+#include "tools/sim/plane_index.hpp"
+
 namespace mapweld::sim {
 namespace {
 
 constexpr double kKerb_m = 0.6;
+constexpr double kLargestHouse_m = 120;  // what reaches farther from its first corner is not looked at there
 
 Vec2d ClosestOnSegment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
   const Vec2d d = b - a;
@@ -37,25 +40,63 @@ Vec2d Gap(const Vec2d& a, const Vec2d& b, const Polyline& polygon) {
   return best;
 }
 
+struct Piece {
+  Vec2d from;
+  Vec2d to;
+  double half_width_m;
+};
+
+PlaneIndex<Piece> PiecesOfStreets(const Town& town) {
+  PlaneIndex<Piece> pieces;
+  for (const Road& road : town.roads) {
+    if (!road.street) continue;
+    for (std::size_t i = 1; i < road.line.size(); ++i) {
+      Box2 box;
+      box.Extend(road.line[i - 1]);
+      box.Extend(road.line[i]);
+      pieces.Add(box.Grown(kLargestHouse_m), {road.line[i - 1], road.line[i], road.half_width_m});
+    }
+  }
+  return pieces;
+}
+
 }  // namespace
 
 void MoveHousesOffStreets(Town& town) {
+  const PlaneIndex<Piece> pieces = PiecesOfStreets(town);
   for (Building& building : town.buildings) {
     Polyline& house = building.footprint;
     double reach = 0;
     for (const Vec2d& p : house) reach = std::max(reach, (p - house.front()).norm());
-    for (const Road& road : town.roads) {
-      if (!road.street) continue;
-      const double wanted = road.half_width_m + kKerb_m;
-      for (std::size_t i = 1; i < road.line.size(); ++i) {
-        if (DistanceToSegment(house.front(), road.line[i - 1], road.line[i]) > reach + wanted) continue;
-        const Vec2d gap = Gap(road.line[i - 1], road.line[i], house);
-        const double distance = gap.norm();
-        if (distance < 1e-6 || distance >= wanted) continue;
-        for (Vec2d& p : house) p += gap * ((wanted - distance) / distance);
-      }
+    for (const Piece& piece : pieces.At(house.front())) {
+      const double wanted = piece.half_width_m + kKerb_m;
+      if (DistanceToSegment(house.front(), piece.from, piece.to) > reach + wanted) continue;
+      const Vec2d gap = Gap(piece.from, piece.to, house);
+      const double distance = gap.norm();
+      if (distance < 1e-6 || distance >= wanted) continue;
+      for (Vec2d& p : house) p += gap * ((wanted - distance) / distance);
     }
   }
+}
+
+void RemoveWhatBlocksStreets(Town* town) {
+  const PlaneIndex<Piece> pieces = PiecesOfStreets(*town);
+  const auto blocked = [&](const Vec2d& p, double margin) {
+    const auto near = pieces.At(p);
+    return std::any_of(near.begin(), near.end(), [&](const Piece& piece) {
+      return DistanceToSegment(p, piece.from, piece.to) < piece.half_width_m + margin;
+    });
+  };
+  std::erase_if(town->buildings, [&](const Building& building) {
+    const auto near = pieces.At(building.footprint.front());
+    return std::any_of(near.begin(), near.end(), [&](const Piece& piece) {
+      return Gap(piece.from, piece.to, building.footprint).norm() < piece.half_width_m + 0.3;
+    });
+  });
+  std::erase_if(town->barriers, [&](const Barrier& barrier) {
+    return std::any_of(barrier.line.begin(), barrier.line.end(), [&](const Vec2d& p) { return blocked(p, 0.6); });
+  });
+  std::erase_if(town->trees, [&](const Tree& tree) { return blocked(tree.position, 2.5); });
 }
 
 }  // namespace mapweld::sim

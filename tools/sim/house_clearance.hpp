@@ -3,12 +3,15 @@
 // drive through them.
 #pragma once
 
-#include "tools/sim/osm_town.hpp"
+#include "tools/sim/town.hpp"
 
 namespace mapweld::sim {
 
 // Moves every house that reaches closer to a street than its carriageway and a narrow kerb straight away from it. A
-// house that a street runs through, an archway, stays where it is. About buildings * road pieces cheap tests.
+// house that a street runs through, an archway, stays where it is.
 void MoveHousesOffStreets(Town& town);
+
+// For towns that nobody built: what still stands on a street, a house, a fence or a tree, goes.
+void RemoveWhatBlocksStreets(Town* town);
 
 }  // namespace mapweld::sim

@@ -79,20 +79,22 @@ Vec2d Along(const Polyline& line, std::size_t i) {
   return (line[std::min(i + 1, line.size() - 1)] - line[i == 0 ? 0 : i - 1]).normalized();
 }
 
-Polyline ToTheRight(const Polyline& line, double offset_m) {
+Polyline ToTheRight(const Polyline& line, const LaneHabit& habit) {
   Polyline out;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Vec2d along = Along(line, i);
+    const double turn = 2 * std::numbers::pi * kStep_m * static_cast<double>(i) / habit.wave_m + habit.phase_rad;
+    const double offset_m = habit.offset_m + habit.wander_m * std::sin(turn);
     out.emplace_back(line[i] + offset_m * Vec2d(along.y(), -along.x()));
   }
   return out;
 }
 
-Polyline LaneLine(const Polyline& centreline) {
+Polyline LaneLine(const Polyline& centreline, const LaneHabit& habit) {
   // The first rounding keeps the inner lane of a sharp corner from folding over itself.
   Polyline line = Smooth(Resample(centreline, kStep_m), 1.0);
   line = LimitCurvature(line, 4.0);
-  line = Resample(ToTheRight(line, LanePath::kLaneOffset_m), kStep_m);
+  line = Resample(ToTheRight(line, habit), kStep_m);
   line = UseTheLane(LimitCurvature(line, 1.05 * LanePath::kMinRadius_m));
   return Resample(Smooth(line, 1.5), kStep_m);
 }
@@ -111,8 +113,8 @@ std::vector<Eigen::Matrix<double, 1, 1>> Headings(const Polyline& line) {
 
 }  // namespace
 
-LanePath LanePath::Beside(const Polyline& centreline) {
-  const Polyline line = LaneLine(centreline);
+LanePath LanePath::Beside(const Polyline& centreline, const LaneHabit& habit) {
+  const Polyline line = LaneLine(centreline, habit);
   // The last resampling made all steps equal, close to but not exactly kStep_m.
   return {line, Length(line) / static_cast<double>(line.size() - 1)};
 }

@@ -8,12 +8,19 @@
 
 namespace mapweld::sim {
 
+// Where between the middle of the street and the kerb somebody drives.
+struct LaneHabit {
+  double offset_m = 1.75;  // to the right of the centre line, on average
+  double wander_m = 0;     // amplitude of a slow wave about it
+  double wave_m = 100;     // its length
+  double phase_rad = 0;
+};
+
 class LanePath {
  public:
-  static constexpr double kLaneOffset_m = 1.75;
   static constexpr double kMinRadius_m = 5.5;
 
-  static LanePath Beside(const Polyline& centreline);
+  static LanePath Beside(const Polyline& centreline, const LaneHabit& habit = {});
 
   // s runs from 0 to length_m() and is the travelled length to within a percent.
   [[nodiscard]] double length_m() const { return position_.end(); }

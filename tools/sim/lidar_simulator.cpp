@@ -2,6 +2,7 @@
 #include "tools/sim/lidar_simulator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,31 +14,11 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr std::int64_t kRevolution_ns = 100'000'000;
+constexpr std::int64_t kTrafficWindow_ns = 100'000'000;  // that long, moving things move in a straight line
+constexpr double kRadPerDeg = std::numbers::pi / 180;
 
-// Sine and cosine of the lasers' elevations.
-struct Elevation {
-  std::array<float, Vlp16::kLasers> sine;
-  std::array<float, Vlp16::kLasers> cosine;
-};
-
-Elevation MakeElevation() {
-  Elevation e{};
-  for (std::size_t i = 0; i < Vlp16::kLasers; ++i) {
-    const double angle = Vlp16::kElevation_deg[i] * std::numbers::pi / 180;
-    e.sine[i] = static_cast<float>(std::sin(angle));
-    e.cosine[i] = static_cast<float>(std::cos(angle));
-  }
-  return e;
-}
-
-// Time since the sensor last looked forward.
-std::int64_t AngleTime_ns(std::int64_t past_hour_ns) {
-  return past_hour_ns % kRevolution_ns;
-}
-
-// World pose of the lidar over one packet: linear between its ends. Over 1.3 ms a vehicle's true motion differs from
-// that by less than a micrometre at the sensor and a tenth of a millimetre at 100 m.
+// World pose of the lidar over one column: linear between its ends. Over a tenth of a millisecond a vehicle's true
+// motion differs from that by nanometres.
 struct MovingPose {
   Matrix3f rotation_begin, rotation_change;
   Vector3f position_begin, position_change;
@@ -53,85 +34,101 @@ MovingPose PoseOver(const VehicleMotion& motion, const geom::Pose3& body_T_lidar
 
 }  // namespace
 
-Vlp16Return DetectReturn(const LidarModel& model, Surface surface, std::uint32_t patch, double distance_m,
-                         double cos_incidence, std::uint64_t random_bits) {
-  constexpr double kHalfSignal = 5e-6;
-  constexpr double kLostAnyway = 0.003;
-  const Reflectance& kind = kReflectance[static_cast<std::size_t>(surface)];
-  const std::uint64_t of_patch = Hash(patch, static_cast<std::uint64_t>(surface), 0xFACE);
-  const double rho = std::clamp(kind.mean + kind.spread * Uniform(of_patch, -1, 1), 0.02, 1.0);
-  const double signal = rho * cos_incidence / std::max(distance_m * distance_m, 0.01);
-  const double seen = signal * signal / (signal * signal + kHalfSignal * kHalfSignal) - kLostAnyway;
-  if (Uniform(Mix(random_bits + 1)) >= seen) return {};
-  const double measured_m = distance_m + model.range_sigma_m * Gaussian(random_bits);
-  const double units = std::clamp(std::round(measured_m / Vlp16::kDistanceUnit_m), 1.0, 65535.0);
-  const double reflectivity = std::clamp(std::round(100 * rho + 3 * Gaussian(Mix(random_bits + 2))), 1.0, 100.0);
-  return {static_cast<std::uint16_t>(units), static_cast<std::uint8_t>(reflectivity)};
+LidarSimulator::LidarSimulator(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
+                               const LidarModel& model, const Weather& weather, std::int64_t start_past_hour_ns,
+                               std::uint64_t seed)
+    : caster_(caster),
+      motion_(motion),
+      traffic_(traffic),
+      model_(model),
+      receiver_(model, weather),
+      start_past_hour_ns_(start_past_hour_ns),
+      seed_(seed) {
+  for (const Beam& beam : model_.beams) {
+    elevations_.push_back({std::sin(beam.elevation_deg * kRadPerDeg), std::cos(beam.elevation_deg * kRadPerDeg)});
+  }
+}
+
+const RayScene* LidarSimulator::SceneOf(std::int64_t window) const {
+  if (traffic_ == nullptr) return nullptr;
+  if (window != window_ || moving_ == nullptr) {
+    window_ = window;
+    const double begin = static_cast<double>(window * kTrafficWindow_ns) * 1e-9;
+    const Traffic::Moving moving = traffic_->Between(begin, begin + static_cast<double>(kTrafficWindow_ns) * 1e-9);
+    moving_ = std::make_unique<RayScene>(moving.begin, moving.end);
+  }
+  return moving_.get();
 }
 
 template <class Visit>
 void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
-  static const Elevation elevation = MakeElevation();
-  const std::int64_t begin_ns = index * Vlp16::kPacketPeriod_ns;
+  const std::int64_t begin_ns = index * model_.column_ns;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const MovingPose pose =
-      PoseOver(motion_, model_.body_T_lidar, seconds(begin_ns), seconds(begin_ns + Vlp16::kPacketPeriod_ns));
+      PoseOver(motion_, model_.body_T_lidar, seconds(begin_ns), seconds(begin_ns + model_.column_ns));
+  const std::int64_t window = begin_ns / kTrafficWindow_ns;
+  const RayScene* moving = SceneOf(window);
+  const double column_rad = Azimuth_deg(index) * kRadPerDeg;
+  constexpr double kTurn_rad_per_ns = 2 * std::numbers::pi / static_cast<double>(kRevolution_ns);
   RayPacket rays;
-  for (std::size_t sequence = 0; sequence < Vlp16::kSequences; ++sequence) {
-    const std::int64_t sequence_ns = static_cast<std::int64_t>(sequence) * Vlp16::kSequencePeriod_ns;
-    const std::int64_t angle_ns = AngleTime_ns(start_past_hour_ns_ + begin_ns + sequence_ns);
-    for (std::size_t laser = 0; laser < Vlp16::kLasers; ++laser) {
-      const std::int64_t laser_ns = static_cast<std::int64_t>(laser) * Vlp16::kLaserPeriod_ns;
-      const auto azimuth = static_cast<float>(2 * std::numbers::pi * static_cast<double>(angle_ns + laser_ns) /
-                                              static_cast<double>(kRevolution_ns));
-      const float share = static_cast<float>(sequence_ns + laser_ns) / static_cast<float>(Vlp16::kPacketPeriod_ns);
-      // The manual's x is right and y forward; ours is x forward, y left.
-      const Vector3f along_lidar(elevation.cosine[laser] * std::cos(azimuth),
-                                 -elevation.cosine[laser] * std::sin(azimuth), elevation.sine[laser]);
-      const Vector3f along = pose.rotation_begin * along_lidar + share * (pose.rotation_change * along_lidar);
+  std::array<Vector3f, RayPacket::kRays> nominal;  // where the sensor believes its beams to look
+  for (std::size_t first = 0; first < model_.beams.size(); first += RayPacket::kRays) {
+    for (std::size_t ray = 0; ray < RayPacket::kRays; ++ray) {
+      const Beam& beam = model_.beams[first + ray];
+      const auto [sine, cosine] = elevations_[first + ray];
+      const double azimuth =
+          column_rad + static_cast<double>(beam.fires_ns) * kTurn_rad_per_ns + beam.azimuth_deg * kRadPerDeg;
+      const double sin_azimuth = std::sin(azimuth);
+      const double cos_azimuth = std::cos(azimuth);
+      // Clockwise from forward; ours is x forward, y left.
+      const Vector3f along(static_cast<float>(cosine * cos_azimuth), static_cast<float>(-cosine * sin_azimuth),
+                           static_cast<float>(sine));
+      const Vector3f right(static_cast<float>(-sin_azimuth), static_cast<float>(-cos_azimuth), 0);
+      const Vector3f up(static_cast<float>(-sine * cos_azimuth), static_cast<float>(sine * sin_azimuth),
+                        static_cast<float>(cosine));
+      // A beam is a few centimetres wide, and somewhere in it is what answers.
+      const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray));
+      const auto aside = static_cast<float>(model_.divergence_rad * Gaussian(bits));
+      const auto above = static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)));
+      const Vector3f lit = (along + aside * right + above * up).normalized();
+      const float share = static_cast<float>(beam.fires_ns) / static_cast<float>(model_.column_ns);
+      const Vector3f direction = pose.rotation_begin * lit + share * (pose.rotation_change * lit);
+      nominal[ray] = pose.rotation_begin * along + share * (pose.rotation_change * along);
       const Vector3f origin = pose.position_begin + share * pose.position_change;
-      rays.origin_x[laser] = origin.x();
-      rays.origin_y[laser] = origin.y();
-      rays.origin_z[laser] = origin.z();
-      rays.direction_x[laser] = along.x();
-      rays.direction_y[laser] = along.y();
-      rays.direction_z[laser] = along.z();
+      const std::int64_t in_window_ns = begin_ns + beam.fires_ns - window * kTrafficWindow_ns;
+      rays.time[ray] = std::min(1.0F, static_cast<float>(in_window_ns) / static_cast<float>(kTrafficWindow_ns));
+      rays.origin_x[ray] = origin.x();
+      rays.origin_y[ray] = origin.y();
+      rays.origin_z[ray] = origin.z();
+      rays.direction_x[ray] = direction.x();
+      rays.direction_y[ray] = direction.y();
+      rays.direction_z[ray] = direction.z();
     }
-    caster_.Cast(rays, model_.max_range_m);
-    for (std::size_t laser = 0; laser < Vlp16::kLasers; ++laser) {
-      if (rays.distance_m[laser] <= 0) continue;
-      const auto ray_number = static_cast<std::uint64_t>(index) * 1024 + sequence * Vlp16::kLasers + laser;
-      const Vlp16Return measured =
-          DetectReturn(model_, rays.surface[laser], rays.patch[laser], static_cast<double>(rays.distance_m[laser]),
-                       static_cast<double>(rays.cos_incidence[laser]), Hash(seed_, ray_number));
-      if (measured.distance_2mm == 0) continue;
-      visit(sequence, laser, measured, Vector3f(rays.origin_x[laser], rays.origin_y[laser], rays.origin_z[laser]),
-            Vector3f(rays.direction_x[laser], rays.direction_y[laser], rays.direction_z[laser]));
+    caster_.Cast(rays, model_.max_range_m, moving);
+    for (std::size_t ray = 0; ray < RayPacket::kRays; ++ray) {
+      const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray) + 1);
+      const LidarReturn measured =
+          rays.distance_m[ray] > 0
+              ? receiver_.Detect(rays.surface[ray], rays.patch[ray], static_cast<double>(rays.distance_m[ray]),
+                                 static_cast<double>(rays.cos_incidence[ray]), bits)
+              : receiver_.DetectAir(static_cast<double>(model_.max_range_m), bits);
+      if (measured.distance_m <= 0) continue;
+      visit(first + ray, measured, Vector3f(rays.origin_x[ray], rays.origin_y[ray], rays.origin_z[ray]), nominal[ray]);
     }
   }
 }
 
-Vlp16Packet LidarSimulator::Packet(std::int64_t index) const {
-  const std::int64_t begin_ns = start_past_hour_ns_ + index * Vlp16::kPacketPeriod_ns;
-  Vlp16Packet packet;
-  packet.us_past_hour = static_cast<std::uint32_t>(begin_ns / 1000 % 3'600'000'000);
-  for (std::size_t block = 0; block < Vlp16::kBlocks; ++block) {
-    const auto sequence = static_cast<std::int64_t>(block * Vlp16::kSequencesPerBlock);
-    const std::int64_t angle_ns = AngleTime_ns(begin_ns + sequence * Vlp16::kSequencePeriod_ns);
-    packet.azimuth_cdeg[block] =
-        static_cast<std::uint16_t>((angle_ns * 36000 + kRevolution_ns / 2) / kRevolution_ns % 36000);
-  }
-  Fire(index, [&](std::size_t sequence, std::size_t laser, const Vlp16Return& measured, const Vector3f&,
-                  const Vector3f&) { packet.returns[sequence][laser] = measured; });
-  return packet;
+void LidarSimulator::Column(std::int64_t index, std::vector<LidarReturn>* returns) const {
+  returns->assign(model_.beams.size(), {});
+  Fire(index, [&](std::size_t beam, const LidarReturn& measured, const Vector3f&, const Vector3f&) {
+    (*returns)[beam] = measured;
+  });
 }
 
 void LidarSimulator::AppendPoints(std::int64_t index, std::vector<Vector3f>* world_points) const {
-  Fire(index,
-       [&](std::size_t, std::size_t, const Vlp16Return& measured, const Vector3f& origin, const Vector3f& direction) {
-         const auto distance_m = static_cast<float>(measured.distance_2mm * Vlp16::kDistanceUnit_m);
-         world_points->push_back(origin + distance_m * direction);
-       });
+  Fire(index, [&](std::size_t, const LidarReturn& measured, const Vector3f& origin, const Vector3f& direction) {
+    world_points->push_back(origin + measured.distance_m * direction);
+  });
 }
 
 }  // namespace mapweld::sim

@@ -39,6 +39,13 @@ constexpr std::array<RoadClass, 9> kRoadClasses{{{"residential", 3.0, true},
                                                  {"service", 2.0, false},
                                                  {"pedestrian", 2.5, false}}};
 
+RoofShape RoofOf(std::string_view tag) {
+  if (tag == "flat") return RoofShape::kFlat;
+  if (tag == "gabled" || tag == "half-hipped" || tag == "gambrel" || tag == "saltbox") return RoofShape::kGable;
+  if (tag == "hipped" || tag == "pyramidal" || tag == "mansard") return RoofShape::kHip;
+  return RoofShape::kAny;
+}
+
 class NodeHandler : public osmium::handler::Handler {
  public:
   NodeHandler(const LocalFrame& frame, Town& town) : frame_(frame), town_(town) {}
@@ -86,7 +93,7 @@ class WayHandler : public osmium::handler::Handler {
     if (area < 4) return;  // survey slips, not houses
     const double height = BuildingHeight_m(way.tags().get_value_by_key("height", ""),
                                            way.tags().get_value_by_key("building:levels", ""), area, way.id());
-    town_.buildings.push_back({way.id(), line_, height});
+    town_.buildings.push_back({way.id(), line_, height, RoofOf(way.tags().get_value_by_key("roof:shape", ""))});
   }
   void AddRoad(const osmium::Way& way) {
     const std::string_view highway = way.tags().get_value_by_key("highway");

@@ -8,6 +8,7 @@
 #include "tools/sim/candump.hpp"
 #include "tools/sim/output_file.hpp"
 #include "tools/sim/pcap_writer.hpp"
+#include "tools/sim/velodyne_encoder.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -16,22 +17,24 @@ std::int64_t ToNs(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-void WriteLidar(const RayCaster& caster, const VehicleMotion& motion, const DriveSpec& spec,
+void WriteLidar(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic, const DriveSpec& spec,
                 const std::filesystem::path& file, const std::function<void(double)>& progress, DriveCounts& counts) {
-  const LidarSimulator lidar(caster, motion, spec.lidar, spec.start_past_hour_ns, spec.seed);
+  const LidarSimulator lidar(caster, motion, traffic, spec.lidar, spec.weather, spec.start_past_hour_ns, spec.seed);
   PcapWriter pcap(file);
-  const std::int64_t packets = ToNs(spec.duration_s) / Vlp16::kPacketPeriod_ns;
+  const std::int64_t period_ns = VelodyneColumns(spec.lidar) * spec.lidar.column_ns;
+  const std::int64_t packets = ToNs(spec.duration_s) / period_ns;
   constexpr std::int64_t kPerReport = 256;
   for (std::int64_t i = 0; i < packets; ++i) {
-    const Vlp16Packet packet = lidar.Packet(i);
-    for (const auto& sequence : packet.returns) {
-      for (const Vlp16Return& r : sequence) counts.returns += r.distance_2mm != 0 ? 1 : 0;
+    const VelodynePacket packet = FireVelodynePacket(lidar, i);
+    for (const auto& block : packet.returns) {
+      for (const VelodyneReturn& r : block) counts.returns += r.distance_2mm != 0 ? 1 : 0;
     }
-    pcap.Write(spec.start_past_hour_ns + (i + 1) * Vlp16::kPacketPeriod_ns, EncodeVlp16(packet));
+    pcap.Write(spec.start_past_hour_ns + (i + 1) * period_ns, EncodeVelodyne(packet));
     if (i % kPerReport == 0) progress(static_cast<double>(i) / static_cast<double>(packets));
   }
   pcap.Close();
   counts.packets = packets;
+  counts.rays = packets * static_cast<std::int64_t>(VelodynePacket::kBlocks * VelodynePacket::kReturnsPerBlock);
 }
 
 void WriteImu(const VehicleMotion& motion, const DriveSpec& spec, const std::filesystem::path& file,
@@ -69,10 +72,11 @@ void WriteTruth(const VehicleMotion& motion, const DriveSpec& spec, const std::f
 
 }  // namespace
 
-DriveCounts WriteRecording(const RayCaster& caster, const VehicleMotion& motion, const DriveSpec& spec,
-                           const std::filesystem::path& dir, const std::function<void(double)>& progress) {
+DriveCounts WriteRecording(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
+                           const DriveSpec& spec, const std::filesystem::path& dir,
+                           const std::function<void(double)>& progress) {
   DriveCounts counts;
-  WriteLidar(caster, motion, spec, dir / "lidar.pcap", progress, counts);
+  WriteLidar(caster, motion, traffic, spec, dir / "lidar.pcap", progress, counts);
   WriteImu(motion, spec, dir / "imu.candump", counts);
   WriteTruth(motion, spec, dir / "truth.tum");
   progress(1);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "tools/sim/osm_town.hpp"
+#include "tools/sim/town.hpp"
 
 namespace mapweld::sim {
 

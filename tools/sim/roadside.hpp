@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands along a street and is on no map: trees, lamp posts, parked cars, garden walls and hedges. Invented, but
-// always the same for the same extract: every piece depends on ids of the map and its place along the street only.
+// What stands along a street and is on no map: trees, lamp posts, signs, kerbs, garden walls and hedges. Invented, but
+// always the same for the same town: every piece depends on ids of the town and its place along the street only.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "tools/sim/clearance.hpp"
+#include "tools/sim/plots.hpp"
 #include "tools/sim/town_mesh.hpp"
 
 namespace mapweld::sim {
@@ -13,7 +16,7 @@ namespace mapweld::sim {
 void AddTree(const Vec2d& foot, std::uint64_t seed, TownMesh& mesh);
 void AddGardenWall(const Vec2d& from, const Vec2d& to, double half_width, double height, bool hedge, TownMesh& mesh);
 
-// Along all streets within `area`. Nothing touches a carriageway or a building, and junctions stay clear.
-void AddRoadside(const Town& town, const Box2& area, TownMesh& mesh);
+// Nothing touches a carriageway or a building, and junctions stay clear.
+void AddRoadside(const std::vector<Plot>& plots, const Clearance& clearance, TownMesh& mesh);
 
 }  // namespace mapweld::sim

@@ -64,10 +64,13 @@ VehiclePlan ReadVehicle(const json& object, const std::string& where) {
 }
 
 SurveyPlan ReadSurvey(const json& object, const std::string& where) {
-  const Fields fields(object, where,
-                      {"drives", "zones", "zone_radius_m", "min_length_m", "max_length_m", "total_length_m"});
+  const Fields fields(
+      object, where,
+      {"drives", "runs", "straight_on", "zones", "zone_radius_m", "min_length_m", "max_length_m", "total_length_m"});
   SurveyPlan plan;
   plan.drives = fields.Get<int>("drives");
+  if (fields.Has("runs")) plan.runs = fields.Get<int>("runs");
+  if (fields.Has("straight_on")) plan.straight_on = fields.Get<bool>("straight_on");
   plan.zones = fields.Get<int>("zones");
   plan.zone_radius_m = fields.Get<double>("zone_radius_m");
   plan.min_length_m = fields.Get<double>("min_length_m");
@@ -76,12 +79,38 @@ SurveyPlan ReadSurvey(const json& object, const std::string& where) {
   if (plan.drives < 1 || plan.drives > 32767 || plan.zones < 1 || plan.zones > plan.drives) {
     throw std::runtime_error(fmt::format("{}: needs 1 to 32767 drives and at most as many zones", where));
   }
+  if (plan.runs < 1 || plan.drives % plan.runs != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: {} drives are no whole number of routes of {} runs", where, plan.drives, plan.runs));
+  }
   if (!(plan.zone_radius_m > 0) || !(plan.min_length_m >= 100) || !(plan.max_length_m >= plan.min_length_m) ||
       !(plan.total_length_m >= plan.min_length_m * plan.drives) ||
       !(plan.total_length_m <= plan.max_length_m * plan.drives)) {
     throw std::runtime_error(
         fmt::format("{}: needs a radius, drives of at least 100 m, and a total that they can reach", where));
   }
+  return plan;
+}
+
+TownPlan ReadTownPlan(const json& object, const std::string& where) {
+  const Fields fields(object, where, {"style", "size_m", "seed"});
+  TownPlan plan;
+  plan.style = fields.Get<std::string>("style");
+  plan.size_m = fields.Get<double>("size_m");
+  plan.seed = fields.Get<std::uint64_t>("seed");
+  if (!(plan.size_m >= 300) || !(plan.size_m <= 10000)) {
+    throw std::runtime_error(fmt::format("{}: size_m {} is outside 300..10000", where, plan.size_m));
+  }
+  (void)StyleByName(plan.style);
+  return plan;
+}
+
+PathPlan ReadPathPlan(const json& object, const std::filesystem::path& beside, const std::string& where) {
+  const Fields fields(object, where, {"folder", "names"});
+  PathPlan plan;
+  plan.folder = beside / fields.Get<std::string>("folder");
+  plan.names = fields.Get<std::vector<std::string>>("names");
+  if (plan.names.empty()) throw std::runtime_error(fmt::format("{}: 'names' is empty", where));
   return plan;
 }
 
@@ -98,6 +127,18 @@ std::filesystem::path ScenarioFolder() {
 
 }  // namespace
 
+std::vector<int> VehicleIds(const Scenario& scenario) {
+  std::vector<int> ids;
+  for (const VehiclePlan& plan : scenario.vehicles) ids.push_back(plan.id);
+  if (scenario.survey) {
+    for (int id = 1; id <= scenario.survey->drives; ++id) ids.push_back(id);
+  }
+  if (scenario.paths) {
+    for (int id = 1; id <= static_cast<int>(scenario.paths->names.size()); ++id) ids.push_back(id);
+  }
+  return ids;
+}
+
 Scenario ReadScenario(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error(fmt::format("cannot open scenario {}", file.string()));
@@ -108,14 +149,39 @@ Scenario ReadScenario(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("scenario {} is no valid JSON: {}", file.string(), e.what()));
   }
   const std::string where = "scenario " + file.string();
-  const Fields fields(document, where, {"name", "about", "town", "origin", "seed", "vehicles", "survey"});
+  const Fields fields(document, where,
+                      {"name", "about", "town", "origin", "seed", "relief_m", "traffic", "max_speed_mps", "rain_share",
+                       "vehicles", "survey", "paths"});
   Scenario scenario;
   scenario.name = fields.Get<std::string>("name");
-  scenario.town = file.parent_path() / fields.Get<std::string>("town");
-  scenario.origin = fields.Point(fields.Get<std::array<double, 2>>("origin"));
+  if (fields.Has("paths")) {
+    scenario.town = TownPlan{};
+  } else if (document.contains("town") && document["town"].is_object()) {
+    scenario.town = ReadTownPlan(document["town"], where + ", town");
+  } else {
+    scenario.town = file.parent_path() / fields.Get<std::string>("town");
+    scenario.origin = fields.Point(fields.Get<std::array<double, 2>>("origin"));
+  }
   if (fields.Has("seed")) scenario.seed = fields.Get<std::uint64_t>("seed");
-  if (fields.Has("survey") == fields.Has("vehicles")) {
-    throw std::runtime_error(fmt::format("{}: needs either 'vehicles' or 'survey'", where));
+  if (fields.Has("relief_m")) scenario.relief_m = fields.Get<double>("relief_m");
+  if (fields.Has("traffic")) scenario.traffic = fields.Get<double>("traffic");
+  if (fields.Has("rain_share")) scenario.rain_share = fields.Get<double>("rain_share");
+  if (!(scenario.rain_share >= 0) || !(scenario.rain_share <= 1)) {
+    throw std::runtime_error(fmt::format("{}: rain_share must be in 0..1", where));
+  }
+  if (!(scenario.relief_m >= 0) || !(scenario.relief_m <= 20) || !(scenario.traffic >= 0) || !(scenario.traffic <= 3)) {
+    throw std::runtime_error(fmt::format("{}: relief_m must be in 0..20 and traffic in 0..3", where));
+  }
+  if (fields.Has("max_speed_mps")) scenario.max_speed_mps = fields.Get<double>("max_speed_mps");
+  if (!(scenario.max_speed_mps >= 1) || !(scenario.max_speed_mps <= 50)) {
+    throw std::runtime_error(fmt::format("{}: max_speed_mps must be in 1..50", where));
+  }
+  if ((fields.Has("survey") ? 1 : 0) + (fields.Has("vehicles") ? 1 : 0) + (fields.Has("paths") ? 1 : 0) != 1) {
+    throw std::runtime_error(fmt::format("{}: needs either 'vehicles', 'survey' or 'paths'", where));
+  }
+  if (fields.Has("paths")) {
+    scenario.paths = ReadPathPlan(fields.Get<json>("paths"), file.parent_path(), where + ", paths");
+    return scenario;
   }
   if (fields.Has("survey")) {
     scenario.survey = ReadSurvey(fields.Get<json>("survey"), where + ", survey");

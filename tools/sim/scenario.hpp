@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tools/sim/local_frame.hpp"
+#include "tools/sim/procedural_town.hpp"
 #include "tools/sim/survey.hpp"
 
 namespace mapweld::sim {
@@ -18,14 +20,31 @@ struct VehiclePlan {
   std::vector<GeoPoint> waypoints;  // along the streets, at least two
 };
 
+// A map, its path resolved: relative paths in the scenario count from its folder. Or a town that is invented.
+using TownSource = std::variant<std::filesystem::path, TownPlan>;
+
+// Real paths instead of routes: the town is invented around them.
+struct PathPlan {
+  std::filesystem::path folder;
+  std::vector<std::string> names;  // of files "NAME.txt" of KITTI poses; vehicle n drives the n-th
+};
+
 struct Scenario {
   std::string name;
-  std::filesystem::path town;  // resolved: relative paths in the file count from the file's folder
-  GeoPoint origin;             // of the world frame
+  TownSource town;
+  GeoPoint origin;  // of the world frame; for an invented town wherever waypoints put it
   std::uint64_t seed = 1;
-  std::vector<VehiclePlan> vehicles;  // by rising id; empty when there is a survey
+  double relief_m = 0;  // standard deviation of the ground's height
+  double traffic = 0;   // density, see traffic.hpp
+  double max_speed_mps = 10;
+  double rain_share = 0;              // of the drives
+  std::vector<VehiclePlan> vehicles;  // by rising id; empty when there is a survey or paths
   std::optional<SurveyPlan> survey;   // its drives get the ids 1, 2, ...
+  std::optional<PathPlan> paths;      // so do these
 };
+
+// The ids of its vehicles or of its survey's drives, rising.
+std::vector<int> VehicleIds(const Scenario& scenario);
 
 // Throws std::runtime_error naming the file and the key that is missing, unknown or out of range.
 Scenario ReadScenario(const std::filesystem::path& file);

@@ -3,6 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
+#include "tools/sim/hash_noise.hpp"
+#include "tools/sim/osm_town.hpp"
+#include "tools/sim/parked_cars.hpp"
+
 namespace mapweld::sim {
 namespace {
 
@@ -18,22 +24,76 @@ std::vector<SurveyedDrive> PlanRoutes(const Scenario& scenario, const Town& town
   return routes;
 }
 
-Box2 AreaAround(const std::vector<SurveyedDrive>& routes) {
-  constexpr double kSight_m = 160;  // beyond the range of the sensor, so that no house at its edge is cut
-  Box2 area;
-  for (const SurveyedDrive& route : routes) {
-    for (const Vec2d& p : route.path.centreline) area.Extend(p);
-  }
-  return area.Grown(kSight_m);
+Town MakeTown(const TownSource& source, const LocalFrame& frame) {
+  if (const auto* plan = std::get_if<TownPlan>(&source)) return InventTown(*plan);
+  return ReadOsmTown(std::get<std::filesystem::path>(source), frame);
+}
+
+Sight SightOfAll(const std::vector<SurveyedDrive>& routes, double reach_m = Sight::kReach_m) {
+  std::vector<const Polyline*> lines;
+  for (const SurveyedDrive& route : routes) lines.push_back(&route.path.centreline);
+  return Sight(lines, reach_m);
+}
+
+// Town and routes; the two hang together where real paths are driven.
+PathTown Plan(const Scenario& scenario, const LocalFrame& frame, std::uint64_t seed) {
+  if (scenario.paths) return BuildPathTown(*scenario.paths, seed);
+  PathTown plan;
+  plan.town = MakeTown(scenario.town, frame);
+  plan.drives = PlanRoutes(scenario, plan.town, frame, seed);
+  return plan;
 }
 
 }  // namespace
 
 SimWorld::SimWorld(const Scenario& scenario, std::uint64_t seed)
+    : SimWorld(scenario, seed, Plan(scenario, LocalFrame(scenario.origin), seed)) {}
+
+SimWorld::SimWorld(const Scenario& scenario, std::uint64_t seed, PathTown plan)
     : frame_(scenario.origin),
-      town_(ReadOsmTown(scenario.town, frame_)),
-      routes_(PlanRoutes(scenario, town_, frame_, seed)),
-      mesh_(BuildTownMesh(town_, AreaAround(routes_))),
-      caster_(mesh_) {}
+      max_speed_mps_(scenario.max_speed_mps),
+      traffic_(scenario.traffic),
+      rain_share_(scenario.rain_share),
+      relief_(scenario.relief_m, Hash(seed, 0x4155)),
+      town_(std::move(plan.town)),
+      real_paths_(scenario.paths.has_value()),
+      routes_(std::move(plan.drives)),
+      clearance_(town_, SightOfAll(routes_)),
+      mesh_(BuildTownMesh(town_, SightOfAll(routes_), SightOfAll(routes_, kDetailedWithin_m))) {
+  relief_.Lift(&mesh_);
+  scene_ = std::make_shared<RayScene>(mesh_);
+  for (const int id : VehicleIds(scenario)) drive_seeds_.push_back(Hash(seed, static_cast<std::uint64_t>(id)));
+}
+
+LanePath SimWorld::PlanLane(std::size_t vehicle) const {
+  const std::uint64_t seed = Hash(drive_seeds_[vehicle], 0x1A4E);
+  LaneHabit habit;
+  if (real_paths_) return LanePath::Beside(routes_[vehicle].path.centreline, {.offset_m = 0});
+  habit.offset_m = Uniform(Hash(seed, 1), 1.35, 1.75);
+  habit.wander_m = Uniform(Hash(seed, 2), 0, 0.2);
+  habit.wave_m = Uniform(Hash(seed, 3), 60, 180);
+  habit.phase_rad = Uniform(Hash(seed, 4), 0, 2 * std::numbers::pi);
+  return LanePath::Beside(routes_[vehicle].path.centreline, habit);
+}
+
+Weather SimWorld::WeatherOf(std::size_t vehicle) const {
+  const std::uint64_t seed = Hash(drive_seeds_[vehicle], 0x4A14);
+  Weather weather;
+  if (Uniform(Hash(seed, 1)) < rain_share_) weather.rain_mm_per_h = Uniform(Hash(seed, 2), 1, 20);
+  return weather;
+}
+
+TownMesh SimWorld::OnlyInDrive(std::size_t vehicle) const {
+  TownMesh mesh;
+  const Sight sight({&routes_[vehicle].path.centreline});
+  AddParkedCars(PlotsAlongStreets(town_, sight), clearance_, drive_seeds_[vehicle], mesh);
+  relief_.Lift(&mesh);
+  return mesh;
+}
+
+RayCaster SimWorld::CasterOf(std::size_t vehicle) const {
+  const std::uint64_t seed = Hash(drive_seeds_[vehicle], 0xF011);
+  return RayCaster({scene_, std::make_shared<RayScene>(OnlyInDrive(vehicle))}, {seed, Uniform(Hash(seed, 1), 0.4, 1)});
+}
 
 }  // namespace mapweld::sim

@@ -13,11 +13,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tools/sim/hash_noise.hpp"
+#include "tools/sim/cloud_writer.hpp"
 #include "tools/sim/output_file.hpp"
 #include "tools/sim/overlap_truth.hpp"
 #include "tools/sim/sim_world.hpp"
 #include "tools/sim/staged_folder.hpp"
+#include "tools/sim/velodyne_encoder.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -28,27 +29,16 @@ struct Job {
   std::size_t index;  // in the scenario
   int id;
   std::int64_t start_past_hour_ns;
-  std::uint64_t seed;
 };
 
-std::vector<int> VehicleIds(const Scenario& scenario) {
-  std::vector<int> ids;
-  for (const VehiclePlan& plan : scenario.vehicles) ids.push_back(plan.id);
-  if (scenario.survey) {
-    for (int id = 1; id <= scenario.survey->drives; ++id) ids.push_back(id);
-  }
-  return ids;
-}
-
-std::vector<Job> SelectJobs(const Scenario& scenario, const SimOptions& options, std::uint64_t seed) {
+std::vector<Job> SelectJobs(const Scenario& scenario, const SimOptions& options) {
   std::vector<Job> jobs;
   const std::vector<int> ids = VehicleIds(scenario);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const bool wanted = options.vehicles.empty() ||
                         std::find(options.vehicles.begin(), options.vehicles.end(), ids[i]) != options.vehicles.end();
     if (!wanted) continue;
-    jobs.push_back({i, ids[i], (600 + static_cast<std::int64_t>(ids[i])) * 1'000'000'000,
-                    Hash(seed, static_cast<std::uint64_t>(ids[i]))});
+    jobs.push_back({i, ids[i], (600 + static_cast<std::int64_t>(ids[i])) * 1'000'000'000});
   }
   for (const int id : options.vehicles) {
     const bool known = std::any_of(jobs.begin(), jobs.end(), [id](const Job& job) { return job.id == id; });
@@ -57,7 +47,7 @@ std::vector<Job> SelectJobs(const Scenario& scenario, const SimOptions& options,
   return jobs;
 }
 
-std::string WireFolder(int id) {
+std::string VehicleFolder(int id) {
   return fmt::format("vehicle_{}", id);
 }
 std::string LogName(int id) {
@@ -66,7 +56,12 @@ std::string LogName(int id) {
 
 VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job, const SimOptions& options,
                      const std::filesystem::path& out, const std::function<void(int, double)>& progress) {
-  const VehicleMotion motion(lane, DrivingStyle{}, job.seed);
+  const std::uint64_t seed = world.drive_seed(job.index);
+  DrivingStyle style;
+  style.max_speed_mps = world.max_speed_mps();
+  const VehicleMotion motion(lane, style, world.relief(), seed);
+  const Traffic traffic(lane, motion, world.relief(), world.traffic(), seed);
+  const RayCaster caster = world.CasterOf(job.index);
   VehicleSummary summary;
   summary.id = job.id;
   summary.duration_s = std::min(motion.duration_s(), options.seconds.value_or(motion.duration_s()));
@@ -75,25 +70,44 @@ VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job
     summary.length_m += motion.VelocityWorld(t + kStep_s / 2).head<2>().norm() * kStep_s;
   }
   const auto report = [&](double share) { progress(job.id, share); };
-  if (options.depth == Depth::kWire) {
-    DriveSpec spec;
-    spec.start_past_hour_ns = job.start_past_hour_ns;
-    spec.duration_s = summary.duration_s;
-    spec.seed = job.seed;
-    const std::filesystem::path folder = out / WireFolder(job.id);
-    std::filesystem::create_directories(folder);
-    summary.counts = WriteRecording(world.caster(), motion, spec, folder, report);
-  } else {
+  const Weather weather = world.WeatherOf(job.index);
+  const LidarModel lidar = LidarByName(options.lidar);
+  if (options.layout == Layout::kSubmaps) {
     AgentLogSpec spec;
     spec.agent_id = static_cast<std::int16_t>(job.id);
     spec.start_past_hour_ns = job.start_past_hour_ns;
     spec.duration_s = summary.duration_s;
-    spec.seed = job.seed;
+    spec.seed = seed;
+    spec.lidar = lidar;
+    spec.weather = weather;
     const std::string name = LogName(job.id);
     std::filesystem::create_directories(out / "truth");
     summary.log =
-        WriteAgentLog(world.caster(), motion, spec, out / (name + ".lcm"), out / "truth" / (name + ".tum"), report);
+        WriteAgentLog(caster, motion, &traffic, spec, out / (name + ".lcm"), out / "truth" / (name + ".tum"), report);
+    return summary;
   }
+  const std::filesystem::path folder = out / VehicleFolder(job.id);
+  std::filesystem::create_directories(folder);
+  if (options.layout == Layout::kWire) {
+    DriveSpec spec;
+    spec.start_past_hour_ns = job.start_past_hour_ns;
+    spec.duration_s = summary.duration_s;
+    spec.seed = seed;
+    spec.lidar = lidar;
+    spec.weather = weather;
+    summary.counts = WriteRecording(caster, motion, &traffic, spec, folder, report);
+    return summary;
+  }
+  CloudSpec spec;
+  spec.layout = options.layout == Layout::kKitti    ? CloudLayout::kKitti
+                : options.layout == Layout::kMulran ? CloudLayout::kMulran
+                                                    : CloudLayout::kGprs;
+  spec.lidar = lidar;
+  spec.weather = weather;
+  spec.start_past_hour_ns = job.start_past_hour_ns;
+  spec.duration_s = summary.duration_s;
+  spec.seed = seed;
+  summary.clouds = WriteClouds(caster, motion, &traffic, spec, folder, report);
   return summary;
 }
 
@@ -124,17 +138,40 @@ void InParallel(std::size_t jobs, unsigned threads_wanted, const Work& work) {
 
 std::vector<LanePath> PlanLanes(const SimWorld& world, unsigned threads) {
   std::vector<std::optional<LanePath>> planned(world.vehicles());
-  InParallel(planned.size(), threads, [&](std::size_t i) { planned[i] = LanePath::Beside(world.route(i).centreline); });
+  InParallel(planned.size(), threads, [&](std::size_t i) { planned[i] = world.PlanLane(i); });
   std::vector<LanePath> lanes;
   for (std::optional<LanePath>& lane : planned) lanes.push_back(std::move(*lane));
   return lanes;
 }
 
+const char* LayoutName(Layout layout) {
+  switch (layout) {
+    case Layout::kSubmaps:
+      return "submaps";
+    case Layout::kKitti:
+      return "kitti";
+    case Layout::kMulran:
+      return "mulran";
+    case Layout::kGprs:
+      return "gprs";
+    case Layout::kWire:
+      break;
+  }
+  return "wire";
+}
+
+std::string TownName(const TownSource& source) {
+  if (const auto* plan = std::get_if<TownPlan>(&source)) {
+    return fmt::format("invented: {}, {:.0f} m, seed {}", plan->style, plan->size_m, plan->seed);
+  }
+  return std::get<std::filesystem::path>(source).filename().string() + ", © OpenStreetMap contributors, ODbL 1.0";
+}
+
 nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world, const std::vector<Job>& jobs,
-                                const std::vector<TrueOverlap>& overlaps, const SimSummary& summary, Depth depth,
-                                std::uint64_t seed) {
+                                const std::vector<TrueOverlap>& overlaps, const SimSummary& summary,
+                                const SimOptions& options, std::uint64_t seed) {
   using nlohmann::ordered_json;
-  const LidarModel lidar;
+  const LidarModel lidar = LidarByName(options.lidar);
   const auto& t = lidar.body_T_lidar.t;
   const auto& q = lidar.body_T_lidar.q;
   const std::vector<int> ids = VehicleIds(scenario);
@@ -142,16 +179,17 @@ nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world,
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     ordered_json vehicle;
     vehicle["id"] = jobs[k].id;
-    if (depth == Depth::kWire) {
-      vehicle["folder"] = WireFolder(jobs[k].id);
-    } else {
+    if (options.layout == Layout::kSubmaps) {
       vehicle["log"] = LogName(jobs[k].id) + ".lcm";
+    } else {
+      vehicle["folder"] = VehicleFolder(jobs[k].id);
     }
+    vehicle["rain_mm_per_h"] = world.WeatherOf(jobs[k].index).rain_mm_per_h;
     vehicle["zone"] = world.zone(jobs[k].index);
     vehicle["start_s"] = static_cast<double>(jobs[k].start_past_hour_ns) * 1e-9;
     vehicle["duration_s"] = summary.vehicles[k].duration_s;
     vehicle["length_m"] = summary.vehicles[k].length_m;
-    if (!scenario.survey) {
+    if (!scenario.vehicles.empty()) {
       for (const GeoPoint& p : scenario.vehicles[jobs[k].index].waypoints) {
         vehicle["route_lat_lon"].push_back({p.lat_deg, p.lon_deg});
       }
@@ -167,16 +205,51 @@ nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world,
                         {"crossing_m", o.crossing_m}});
   }
   return {{"name", scenario.name},
-          {"attribution", "town: © OpenStreetMap contributors, ODbL 1.0"},
-          {"town", scenario.town.filename().string()},
+          {"town", scenario.paths ? "invented around real paths" : TownName(scenario.town)},
           {"origin_lat_lon", {scenario.origin.lat_deg, scenario.origin.lon_deg}},
           {"seed", seed},
-          {"depth", depth == Depth::kWire ? "wire" : "submaps"},
-          {"lidar", "VLP-16, 600 rpm, strongest return"},
+          {"layout", LayoutName(options.layout)},
+          {"lidar", lidar.name + ", 600 rpm, strongest return"},
           {"imu", "Xsens MTi-600 CAN, 200 Hz"},
           {"body_T_lidar", {{"t_m", {t.x(), t.y(), t.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
           {"vehicles", vehicles},
           {"overlaps_of_whole_routes", together}};
+}
+
+// Refuses before any work is lost. About what the drives will take: a second of packets per 8 m, a cloud per metre, or
+// a submap per 5 m.
+void CheckDiskSpace(const std::filesystem::path& folder, const std::vector<LanePath>& lanes,
+                    const std::vector<Job>& jobs, const SimOptions& options) {
+  double length_m = 0;
+  for (const Job& job : jobs) {
+    const double longest_m = options.seconds.value_or(1e9) * 10;
+    length_m += std::min(lanes[job.index].length_m(), longest_m);
+  }
+  const LidarModel lidar = LidarByName(options.lidar);
+  const double shots = static_cast<double>(lidar.beams.size()) * static_cast<double>(kRevolution_ns / lidar.column_ns);
+  double bytes_per_m = 0;
+  switch (options.layout) {
+    case Layout::kWire:
+      bytes_per_m = 10 * shots * 3.3 / 8;
+      break;
+    case Layout::kSubmaps:
+      bytes_per_m = 70'000 / 5.0;
+      break;
+    case Layout::kKitti:
+    case Layout::kMulran:
+      bytes_per_m = 16 * shots * 0.7;
+      break;
+    case Layout::kGprs:
+      bytes_per_m = 10 * 12 * shots * 0.7;
+      break;
+  }
+  const double needed = length_m * bytes_per_m;
+  const auto there = static_cast<double>(std::filesystem::space(folder).available);
+  if (needed > there) {
+    throw std::runtime_error(
+        fmt::format("{} needs about {:.1f} GB and its disk has {:.1f}; choose another disk with -o",
+                    options.out.string(), needed * 1e-9, there * 1e-9));
+  }
 }
 
 double SecondsSince(std::chrono::steady_clock::time_point begin) {
@@ -190,12 +263,17 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
   if (options.seconds && !(*options.seconds >= 0.1)) {
     throw std::runtime_error(fmt::format("--seconds {} is too short; the least is 0.1", *options.seconds));
   }
+  if (options.layout == Layout::kWire && VelodyneColumns(LidarByName(options.lidar)) == 0) {
+    throw std::runtime_error(
+        fmt::format("{} packets are not written; choose --layout kitti, or --lidar vlp16 or hdl32e", options.lidar));
+  }
   const Scenario scenario = ReadScenario(options.scenario);
   const std::uint64_t seed = options.seed.value_or(scenario.seed);
-  const std::vector<Job> jobs = SelectJobs(scenario, options, seed);
+  const std::vector<Job> jobs = SelectJobs(scenario, options);
   StagedFolder folder(options.out, kScenarioFile);
   const SimWorld world(scenario, seed);
   const std::vector<LanePath> lanes = PlanLanes(world, options.threads);
+  CheckDiskSpace(folder.path(), lanes, jobs, options);
   const std::vector<TrueOverlap> overlaps = FindTrueOverlaps(lanes);
   SimSummary summary;
   summary.overlaps = static_cast<int>(std::count_if(overlaps.begin(), overlaps.end(),
@@ -206,7 +284,7 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
     summary.vehicles[i] = Drive(world, lanes[jobs[i].index], jobs[i], options, folder.path(), progress);
   });
   OutputFile description(folder.path() / kScenarioFile);
-  description.Write(Describe(scenario, world, jobs, overlaps, summary, options.depth, seed).dump(2) + "\n");
+  description.Write(Describe(scenario, world, jobs, overlaps, summary, options, seed).dump(2) + "\n");
   description.Close();
   folder.Publish();
   summary.drive_s = SecondsSince(begin) - summary.prepare_s;

@@ -15,15 +15,19 @@
 namespace mapweld::sim {
 
 // What is written of every drive.
-enum class Depth {
+enum class Layout : std::uint8_t {
   kWire,     // every packet and CAN frame: vehicle_<n>/, see recording_writer.hpp
   kSubmaps,  // what the agent would have published: agent_<n>.lcm and truth/agent_<n>.tum, see agent_log.hpp
+  kKitti,    // clouds and true poses: vehicle_<n>/, see cloud_writer.hpp; the other two likewise
+  kMulran,
+  kGprs,
 };
 
 struct SimOptions {
   std::filesystem::path scenario;
   std::filesystem::path out;
-  Depth depth = Depth::kWire;
+  Layout layout = Layout::kWire;
+  std::string lidar = "vlp16";        // see lidar_model.hpp
   std::vector<int> vehicles;          // empty: all
   std::optional<std::uint64_t> seed;  // else the scenario's
   std::optional<double> seconds;      // no drive longer than this
@@ -34,8 +38,9 @@ struct VehicleSummary {
   int id = 0;
   double length_m = 0;    // of the part that was driven
   double duration_s = 0;  // of sensor time
-  DriveCounts counts;     // depth kWire
-  AgentLogCounts log;     // depth kSubmaps
+  DriveCounts counts;     // layout kWire
+  AgentLogCounts log;     // layout kSubmaps
+  std::int64_t clouds = 0;
 };
 
 struct SimSummary {

@@ -90,7 +90,7 @@ std::vector<std::vector<std::uint32_t>> ChooseZones(const RoadGraph& graph, cons
 // Exponential above the shortest, scaled so that the sum comes out.
 std::vector<double> DrawLengths(const SurveyPlan& plan, std::uint64_t seed) {
   std::vector<double> draws;
-  for (int i = 0; i < plan.drives; ++i) {
+  for (int i = 0; i < plan.drives / plan.runs; ++i) {
     draws.push_back(-std::log(1 - Uniform(Hash(seed, 1, static_cast<std::uint64_t>(i)))));
   }
   const auto lengths = [&](double scale_m) {
@@ -104,7 +104,7 @@ std::vector<double> DrawLengths(const SurveyPlan& plan, std::uint64_t seed) {
     const double middle = (low + high) / 2;
     double sum = 0;
     for (const double l : lengths(middle)) sum += l;
-    (sum < plan.total_length_m ? low : high) = middle;
+    (sum * plan.runs < plan.total_length_m ? low : high) = middle;
   }
   return lengths(low);
 }
@@ -136,16 +136,70 @@ StreetPath Wander(const RoadGraph& graph, const std::vector<std::uint32_t>& zone
   return path;
 }
 
+// Straight on from a random node at every junction, over streets that are not `taken` yet; takes them. Throws
+// std::runtime_error when no way of the length is found.
+StreetPath GoStraight(const RoadGraph& graph, const std::vector<std::uint32_t>& zone, double length_m,
+                      std::uint64_t seed, std::vector<char>* taken) {
+  constexpr std::uint64_t kTries = 2000;
+  constexpr double kStraight = 0.6;  // cosine: what turns more is a bend, not the same street
+  std::vector<char> allowed(graph.size(), 0);
+  for (const std::uint32_t node : zone) allowed[node] = 1;
+  for (std::uint64_t attempt = 0; attempt < kTries; ++attempt) {
+    StreetPath path;
+    path.nodes.push_back(zone[Hash(seed, 4, attempt) % zone.size()]);
+    double driven_m = 0;
+    while (driven_m < length_m) {
+      const std::uint32_t here = path.nodes.back();
+      const bool first = path.nodes.size() == 1;
+      const Vec2d before = first ? Vec2d(Vec2d::Zero()) : Vec2d(graph.Position(path.nodes[path.nodes.size() - 2]));
+      double best = first ? -2 : kStraight;
+      std::uint32_t next = here;
+      for (const RoadGraph::Edge& e : graph.Edges(here)) {
+        // A junction may be crossed by many; the nodes between junctions belong to one street.
+        const bool free = (*taken)[e.to] == 0 || graph.Edges(e.to).size() > 2;
+        if (allowed[e.to] == 0 || !free || ((*taken)[here] != 0 && (*taken)[e.to] != 0)) continue;
+        const Vec2d on = (graph.Position(e.to) - graph.Position(here)).normalized();
+        const double straight = first ? 0 : on.dot((graph.Position(here) - before).normalized());
+        if (straight <= best) continue;
+        best = straight;
+        next = e.to;
+      }
+      if (next == here) break;
+      driven_m += (graph.Position(next) - graph.Position(here)).norm();
+      path.nodes.push_back(next);
+    }
+    if (driven_m < length_m) continue;
+    for (const std::uint32_t node : path.nodes) {
+      (*taken)[node] = 1;
+      path.centreline.push_back(graph.Position(node));
+    }
+    return path;
+  }
+  throw std::runtime_error(
+      "the town has too few long straight streets for the survey; ask for fewer or shorter drives");
+}
+
+StreetPath Reversed(StreetPath path) {
+  std::reverse(path.nodes.begin(), path.nodes.end());
+  std::reverse(path.centreline.begin(), path.centreline.end());
+  return path;
+}
+
 }  // namespace
 
 std::vector<SurveyedDrive> PlanSurvey(const RoadGraph& graph, const SurveyPlan& plan, std::uint64_t seed) {
   const std::vector<std::vector<std::uint32_t>> zones = ChooseZones(graph, plan);
   const std::vector<double> lengths = DrawLengths(plan, seed);
+  std::vector<char> taken(graph.size(), 0);
   std::vector<SurveyedDrive> drives;
-  for (int i = 0; i < plan.drives; ++i) {
-    const int zone = i % plan.zones;
-    drives.push_back({zone, Wander(graph, zones[static_cast<std::size_t>(zone)], lengths[static_cast<std::size_t>(i)],
-                                   Hash(seed, 3, static_cast<std::uint64_t>(i)))});
+  for (int route = 0; route < plan.drives / plan.runs; ++route) {
+    const int zone = route % plan.zones;
+    const std::vector<std::uint32_t>& nodes = zones[static_cast<std::size_t>(zone)];
+    const double length_m = lengths[static_cast<std::size_t>(route)];
+    const std::uint64_t route_seed = Hash(seed, 3, static_cast<std::uint64_t>(route));
+    const StreetPath path = plan.straight_on ? GoStraight(graph, nodes, length_m, route_seed, &taken)
+                                             : Wander(graph, nodes, length_m, route_seed);
+    for (int run = 0; run < plan.runs; ++run) drives.push_back({zone, run % 2 == 0 ? path : Reversed(path)});
   }
   return drives;
 }

@@ -19,6 +19,8 @@ struct SurveyPlan {
   double min_length_m = 0;    // of a drive
   double max_length_m = 0;    // few drives are that long: the lengths fall off exponentially
   double total_length_m = 0;  // of all drives
+  int runs = 1;               // every route is driven that often, the second time backwards, the third forwards, ...
+  bool straight_on = false;  // routes go straight on at junctions and share no street with one another: they only cross
 };
 
 struct SurveyedDrive {
@@ -26,8 +28,9 @@ struct SurveyedDrive {
   StreetPath path;
 };
 
-// The zones with the most street that can be driven without turning back, largest first. Depends on its arguments
-// only. Throws std::runtime_error when the town has no room for the zones or a zone no loop to drive.
+// Drives route * runs, route * runs + 1, ... are the runs of one route. The zones with the most street that can be
+// driven without turning back, largest first. Depends on its arguments only. Throws std::runtime_error when the town
+// has no room for the zones or a zone no loop to drive.
 std::vector<SurveyedDrive> PlanSurvey(const RoadGraph& graph, const SurveyPlan& plan, std::uint64_t seed);
 
 }  // namespace mapweld::sim

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sim/town_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "tools/sim/building_mesh.hpp"
 #include "tools/sim/roadside.hpp"
 
 namespace mapweld::sim {
@@ -13,22 +15,20 @@ Eigen::Vector3d Lift(const Vec2d& p, double z) {
 }
 
 // Small tiles, because a ray is cut with single precision relative to the size of a triangle.
-void AddGround(const Box2& area, TownMesh& mesh) {
-  constexpr double kTile_m = 50;
+void AddGround(const Sight& sight, TownMesh& mesh) {
   constexpr double kBelowRoad_m = -0.05;
-  for (double x = area.low.x(); x < area.high.x(); x += kTile_m) {
-    for (double y = area.low.y(); y < area.high.y(); y += kTile_m) {
-      const Polyline tile{{x, y}, {x + kTile_m, y}, {x + kTile_m, y + kTile_m}, {x, y + kTile_m}};
-      Of(mesh, Surface::kGrass).AddFace(tile, kBelowRoad_m);
-    }
+  for (const Vec2d& corner : sight.Cells()) {
+    const Vec2d middle = corner + Vec2d::Constant(Sight::kCell_m / 2);
+    Of(mesh, Surface::kGrass)
+        .AddFace(Rectangle(middle, Vec2d::UnitX(), Sight::kCell_m / 2, Sight::kCell_m / 2), kBelowRoad_m);
   }
 }
 
-void AddRoad(const Road& road, const Box2& area, TownMesh& mesh) {
+void AddRoad(const Road& road, const Sight& sight, TownMesh& mesh) {
   constexpr int kDiscCorners = 12;
   Mesh& surface = Of(mesh, Surface::kRoad);
   for (std::size_t i = 0; i < road.line.size(); ++i) {
-    if (!area.Contains(road.line[i])) continue;
+    if (!sight.Contains(road.line[i])) continue;
     // A disc at every node closes the wedge between two straight pieces.
     Polyline disc;
     for (int k = 0; k < kDiscCorners; ++k) {
@@ -39,20 +39,48 @@ void AddRoad(const Road& road, const Box2& area, TownMesh& mesh) {
     if (i == 0) continue;
     const Vec2d step = road.line[i] - road.line[i - 1];
     if (step.norm() < 1e-6) continue;
-    surface.AddFace(
-        Rectangle((road.line[i] + road.line[i - 1]) / 2, step.normalized(), step.norm() / 2, road.half_width_m), 0);
+    // In short pieces, so that they can follow hills.
+    constexpr double kPiece_m = 10;
+    const double pieces = std::ceil(step.norm() / kPiece_m);
+    for (double k = 0; k < pieces; ++k) {
+      const Vec2d middle = road.line[i - 1] + (k + 0.5) / pieces * step;
+      surface.AddFace(Rectangle(middle, step.normalized(), step.norm() / pieces / 2, road.half_width_m), 0);
+    }
   }
-}
-
-void AddBuilding(const Building& building, TownMesh& mesh) {
-  Of(mesh, Surface::kWall).AddWalls(building.footprint, -0.05, building.height_m);
-  Of(mesh, Surface::kRoof).AddFace(building.footprint, building.height_m);
 }
 
 void AddBarrier(const Barrier& barrier, TownMesh& mesh) {
   const double half_width = barrier.hedge ? 0.3 : 0.08;
   for (std::size_t i = 1; i < barrier.line.size(); ++i) {
     AddGardenWall(barrier.line[i - 1], barrier.line[i], half_width, barrier.height_m, barrier.hedge, mesh);
+  }
+}
+
+// Walls with pillars in front of them, and a ceiling.
+void AddPassage(const Passage& passage, TownMesh& mesh) {
+  constexpr double kPillar_m = 5;
+  const double half = passage.half_width_m + 0.6;
+  double driven = 0;
+  const double length = Length(passage.line);
+  for (std::size_t i = 1; i < passage.line.size(); ++i) {
+    const Vec2d step = passage.line[i] - passage.line[i - 1];
+    const Vec2d along = step.normalized();
+    const Vec2d left(-along.y(), along.x());
+    const auto at = [&](double s, double aside) -> Vec2d { return passage.line[i - 1] + s * along + aside * left; };
+    Of(mesh, Surface::kWall).AddFace(Rectangle(at(step.norm() / 2, 0), along, step.norm() / 2, half), passage.height_m);
+    const double from = std::clamp(passage.open_m - driven, 0.0, step.norm());
+    const double to = std::clamp(length - passage.open_m - driven, 0.0, step.norm());
+    for (const double side : {-1.0, 1.0}) {
+      if (to - from < 0.1) continue;
+      Of(mesh, Surface::kWall)
+          .AddQuad(Lift(at(from, side * half), -0.05), Lift(at(to, side * half), -0.05),
+                   Lift(at(to, side * half), passage.height_m), Lift(at(from, side * half), passage.height_m));
+      for (double s = from + kPillar_m / 2; s < to; s += kPillar_m) {
+        Of(mesh, Surface::kWall)
+            .AddWalls(Rectangle(at(s, side * (half - 0.2)), along, 0.2, 0.2), -0.05, passage.height_m);
+      }
+    }
+    driven += step.norm();
   }
 }
 
@@ -86,20 +114,30 @@ Polyline Rectangle(const Vec2d& centre, const Vec2d& along, double half_length, 
   return {centre - l - w, centre + l - w, centre + l + w, centre - l + w};
 }
 
-TownMesh BuildTownMesh(const Town& town, const Box2& area) {
+void Mesh::Append(const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const Triangle& t : other.triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+TownMesh BuildTownMesh(const Town& town, const Sight& sight, const Sight& close) {
   TownMesh mesh;
-  AddGround(area, mesh);
-  for (const Road& road : town.roads) AddRoad(road, area, mesh);
+  AddGround(sight, mesh);
+  for (const Road& road : town.roads) AddRoad(road, sight, mesh);
   for (const Building& building : town.buildings) {
-    if (area.Contains(building.footprint.front())) AddBuilding(building, mesh);
+    const Vec2d& corner = building.footprint.front();
+    if (sight.Contains(corner)) AddBuilding(building, close.Contains(corner), mesh);
+  }
+  for (const Passage& passage : town.passages) {
+    if (sight.Contains(passage.line.front())) AddPassage(passage, mesh);
   }
   for (const Barrier& barrier : town.barriers) {
-    if (area.Contains(barrier.line.front())) AddBarrier(barrier, mesh);
+    if (sight.Contains(barrier.line.front())) AddBarrier(barrier, mesh);
   }
   for (const Tree& tree : town.trees) {
-    if (area.Contains(tree.position)) AddTree(tree.position, static_cast<std::uint64_t>(tree.id), mesh);
+    if (sight.Contains(tree.position)) AddTree(tree.position, static_cast<std::uint64_t>(tree.id), mesh);
   }
-  AddRoadside(town, area, mesh);
+  AddRoadside(PlotsAlongStreets(town, sight), Clearance(town, sight), mesh);
   return mesh;
 }
 

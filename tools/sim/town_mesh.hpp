@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/sim/osm_town.hpp"
+#include "tools/sim/sight.hpp"
 #include "tools/sim/surface.hpp"
+#include "tools/sim/town.hpp"
 
 namespace mapweld::sim {
 
@@ -21,6 +22,8 @@ struct Mesh {
   void AddQuad(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d);
   // Walls around `base` from z_low to z_high.
   void AddWalls(const Polyline& base, double z_low, double z_high);
+  // All of another mesh.
+  void Append(const Mesh& other);
   // A horizontal face over a counter-clockwise polygon.
   void AddFace(const Polyline& base, double z);
 };
@@ -36,8 +39,11 @@ inline const Mesh& Of(const TownMesh& mesh, Surface surface) {
 // Corners of a rectangle around `centre`, counter-clockwise; `along` is of unit length.
 Polyline Rectangle(const Vec2d& centre, const Vec2d& along, double half_length, double half_width);
 
-// Everything within `area`: ground, roads, buildings, barriers, trees and the roadside of roadside.hpp. Depends on the
-// town and the area only.
-TownMesh BuildTownMesh(const Town& town, const Box2& area);
+// Only what stands this close to a route gets windows, doors and balconies.
+inline constexpr double kDetailedWithin_m = 70;
+
+// Everything in `sight`, in detail where it is `close`, that is the same in every drive: ground, roads, buildings,
+// barriers, trees and the roadside of roadside.hpp. On flat ground. Depends on the arguments only.
+TownMesh BuildTownMesh(const Town& town, const Sight& sight, const Sight& close);
 
 }  // namespace mapweld::sim

@@ -42,7 +42,7 @@ constexpr std::array<Tone, 7> kTones{{{2, 1.3, 4e-3},
                                       {4, 1.1, 2.5e-3},
                                       {4, 3.7, 0.4e-3}}};
 
-UniformSpline<6> BuildState(const LanePath& path, const DrivingStyle& style, std::uint64_t seed) {
+UniformSpline<6> BuildState(const LanePath& path, const DrivingStyle& style, const Relief& relief, std::uint64_t seed) {
   constexpr double kPitchPerAccel = -0.008;       // rad per m/s^2: braking dips the nose, and nose down is positive
   constexpr double kRollPerLateralAccel = 0.010;  // rad per m/s^2: a left bend leans the body to the right
   const UniformSpline<1> travelled = PlanSpeed(path, style);
@@ -59,8 +59,15 @@ UniformSpline<6> BuildState(const LanePath& path, const DrivingStyle& style, std
     const double speed = travelled.Derivative(t).x();
     const double accel = travelled.SecondDerivative(t).x();
     UniformSpline<6>::Vector state;
-    state << path.Position(s), kBodyHeight_m, roll.Follow(kRollPerLateralAccel * speed * speed * path.Curvature(s)),
-        pitch.Follow(kPitchPerAccel * accel), path.Heading(s);
+    const Vec2d at = path.Position(s);
+    const double heading = path.Heading(s);
+    // The road under the wheels: uphill lifts the nose, ground that rises to the left leans the body to the right.
+    const Vec2d slope = relief.Slope(at);
+    const double uphill = slope.dot(Vec2d(std::cos(heading), std::sin(heading)));
+    const double left_up = slope.dot(Vec2d(-std::sin(heading), std::cos(heading)));
+    state << at, kBodyHeight_m + relief.Height(at),
+        std::atan(left_up) + roll.Follow(kRollPerLateralAccel * speed * speed * path.Curvature(s)),
+        -std::atan(uphill) + pitch.Follow(kPitchPerAccel * accel), heading;
     for (std::size_t k = 0; k < kTones.size(); ++k) {
       state[static_cast<Eigen::Index>(kTones[k].channel)] +=
           kTones[k].amplitude * speed / 10 * std::sin(2 * std::numbers::pi * kTones[k].frequency_hz * t + phase[k]);
@@ -78,8 +85,8 @@ geom::Quatd Orientation(const UniformSpline<6>::Vector& state) {
 
 }  // namespace
 
-VehicleMotion::VehicleMotion(const LanePath& path, const DrivingStyle& style, std::uint64_t seed)
-    : state_(BuildState(path, style, seed)) {}
+VehicleMotion::VehicleMotion(const LanePath& path, const DrivingStyle& style, const Relief& relief, std::uint64_t seed)
+    : state_(BuildState(path, style, relief, seed)) {}
 
 geom::Pose3 VehicleMotion::WorldFromBody(double t) const {
   const auto state = state_.Value(t);

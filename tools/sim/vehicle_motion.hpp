@@ -8,6 +8,7 @@
 
 #include "core/geom/pose3.hpp"
 #include "tools/sim/lane_path.hpp"
+#include "tools/sim/relief.hpp"
 #include "tools/sim/speed_profile.hpp"
 #include "tools/sim/uniform_spline.hpp"
 
@@ -19,7 +20,7 @@ inline constexpr double kBodyHeight_m = 1.5;  // of the IMU above the road
 class VehicleMotion {
  public:
   // `seed` chooses the phases of the shaking.
-  VehicleMotion(const LanePath& path, const DrivingStyle& style, std::uint64_t seed);
+  VehicleMotion(const LanePath& path, const DrivingStyle& style, const Relief& relief, std::uint64_t seed);
 
   // Times t are seconds since the start; standing still before and after.
   [[nodiscard]] double duration_s() const { return state_.end(); }

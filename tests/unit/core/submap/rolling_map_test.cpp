@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -73,6 +74,55 @@ TEST_F(RollingMapTest, TheOrderOfInsertionDoesNotMatter) {
     EXPECT_EQ(submap_->points[i].x, other->points[i].x);
     EXPECT_EQ(submap_->points[i].z, other->points[i].z);
   }
+}
+
+TEST_F(RollingMapTest, CutInStepsIsTheSameAsCutAtOnce) {
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<float> at(-45, 45);
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(map_->Insert({at(rng), at(rng), 0.1F * at(rng)}, 1), Status::kOk);
+  ASSERT_EQ(map_->Extract({}, 1, submap_.get()), Status::kOk);
+  auto in_steps = std::make_unique<Submap>();
+  map_->BeginCut({}, 1, in_steps.get());
+  for (std::size_t i = 0; i < RollingMap::kCutSteps; ++i) EXPECT_EQ(map_->CutStep(in_steps.get()), Status::kOk);
+  ASSERT_EQ(in_steps->points.size(), submap_->points.size());
+  for (std::size_t i = 0; i < submap_->points.size(); ++i) EXPECT_EQ(in_steps->points[i].x, submap_->points[i].x);
+}
+
+// A wall 20 m ahead that stays, and a car 10 m ahead that is there in the first second and gone in the next two.
+TEST_F(RollingMapTest, LeavesOutWhatStoodThereForAWhileOnly) {
+  auto scan = std::make_unique<sensor::Scan>();
+  auto image = std::make_unique<RangeImage>();
+  const std::array<geom::Pose3, RangeImage::kPoses> at_rest{};
+  scan->t_end = {100'000'000};
+  for (int revolution = 0; revolution < 30; ++revolution) {
+    const float car = revolution < 10 ? 10.0F : 1000.0F;
+    scan->points.clear();
+    for (int column = -100; column <= 100; ++column) {
+      for (int beam = -3; beam <= 3; ++beam) {
+        const float y_per_x = std::tan(static_cast<float>(column) * 0.0035F);
+        const bool hits_car = std::abs(10 * y_per_x) < 1 && beam <= 0;
+        const float x = std::min(hits_car ? car : 1000.0F, 20.0F);
+        const Eigen::Vector3f p(x, x * y_per_x, x * static_cast<float>(beam) * 0.035F);
+        ASSERT_EQ(scan->points.TryPush({p.x(), p.y(), p.z(), 0, 0, 0, 0}), Status::kOk);
+        ASSERT_EQ(map_->Insert(p, 0), Status::kOk);
+      }
+    }
+    image->Build(*scan, at_rest);
+    map_->Vote(*image, {0, 0, 0}, 0);
+  }
+  ASSERT_EQ(map_->Extract({}, 0, submap_.get()), Status::kOk);
+  int of_wall = 0;
+  for (const SubmapPoint& p : submap_->points) {
+    EXPECT_GT(p.x, 15) << p.y << " " << p.z;
+    of_wall += p.x > 19 ? 1 : 0;
+  }
+  EXPECT_GT(of_wall, 150);
+
+  auto trusting = std::make_unique<RollingMap>(RollingMapConfig{.max_through_share = 2});
+  ASSERT_EQ(trusting->Insert({10, 0, 0}, 0), Status::kOk);
+  for (int i = 0; i < 8; ++i) trusting->Vote(*image, {0, 0, 0}, 0);
+  ASSERT_EQ(trusting->Extract({}, 0, submap_.get()), Status::kOk);
+  EXPECT_EQ(submap_->points.size(), 1U);
 }
 
 TEST_F(RollingMapTest, ForgetsTheOldestStretchWhenItIsFull) {

@@ -58,6 +58,20 @@ TEST(SubmapCodec, EncodingADecodedSubmapGivesTheSameBytes) {
   EXPECT_EQ(Encode(*back), bytes);
 }
 
+TEST(SubmapCodec, EncodingInPartsGivesTheSameBytes) {
+  const auto submap = RandomSubmap(3000);
+  std::vector<std::uint8_t> bytes(kCap.submap_encoded_bytes);
+  auto encoder = std::make_unique<SubmapEncoder>();
+  ASSERT_EQ(encoder->Begin(*submap, bytes), Status::kOk);
+  int calls = 1;
+  Result<std::size_t> size = encoder->Continue(*submap, 500);
+  for (; size.status() == Status::kNotReady; ++calls) size = encoder->Continue(*submap, 500);
+  ASSERT_TRUE(size.ok());
+  bytes.resize(size.value());
+  EXPECT_EQ(bytes, Encode(*submap));
+  EXPECT_NEAR(calls, static_cast<double>(submap->points.size()) / 500, 2);
+}
+
 TEST(SubmapCodec, RefusesEveryTruncation) {
   const auto bytes = Encode(*RandomSubmap(100));
   auto back = std::make_unique<Submap>();

@@ -19,8 +19,14 @@ Eigen::MatrixXd Weights(int n, const std::vector<std::tuple<int, int, double>>& 
   return w;
 }
 
+WeightConfig Theta(double theta) {
+  WeightConfig out;
+  out.theta = theta;
+  return out;
+}
+
 TEST(Clustering, SeparatesDrivesWithoutATie) {
-  const auto groups = ClusterDrives(Weights(5, {{0, 3, 0.9}, {3, 4, 0.9}}), 0.02);
+  const auto groups = ClusterDrives(Weights(5, {{0, 3, 0.9}, {3, 4, 0.9}}), {});
   EXPECT_THAT(groups, ElementsAre(ElementsAre(0, 3, 4), ElementsAre(1), ElementsAre(2)));
 }
 
@@ -33,19 +39,39 @@ TEST(Clustering, CutsTwoGroupsThatHardlyHoldTogether) {
     }
   }
   ties.emplace_back(3, 4, 0.005);
-  EXPECT_THAT(ClusterDrives(Weights(8, ties), 0.02), ElementsAre(ElementsAre(0, 1, 2, 3), ElementsAre(4, 5, 6, 7)));
+  EXPECT_THAT(ClusterDrives(Weights(8, ties), {}), ElementsAre(ElementsAre(0, 1, 2, 3), ElementsAre(4, 5, 6, 7)));
   std::get<2>(ties.back()) = 0.5;
-  EXPECT_EQ(ClusterDrives(Weights(8, ties), 0.02).size(), 1U);
+  EXPECT_EQ(ClusterDrives(Weights(8, ties), {}).size(), 1U);
 }
 
 TEST(Clustering, HoldsAChainOfGoodTiesTogether) {
   std::vector<std::tuple<int, int, double>> ties;
   for (int i = 0; i + 1 < 6; ++i) ties.emplace_back(i, i + 1, 0.9);
-  EXPECT_EQ(ClusterDrives(Weights(6, ties), 0.02).size(), 1U);
+  EXPECT_EQ(ClusterDrives(Weights(6, ties), {}).size(), 1U);
+}
+
+TEST(Clustering, DoesNotCutALongLineOfDrives) {
+  // The second eigenvalue of such a line is far below theta.
+  for (const int n : {10, 40, 150}) {
+    std::vector<std::tuple<int, int, double>> ties;
+    for (int i = 0; i + 1 < n; ++i) ties.emplace_back(i, i + 1, 0.9);
+    EXPECT_EQ(ClusterDrives(Weights(n, ties), {}).size(), 1U) << n;
+  }
+}
+
+TEST(Clustering, CutsThreeGroupsThatHardlyHoldTogether) {
+  std::vector<std::tuple<int, int, double>> ties;
+  for (int group = 0; group < 3; ++group) {
+    for (int i = 0; i < 3; ++i) ties.emplace_back(3 * group + i, 3 * group + (i + 1) % 3, 0.9);
+  }
+  ties.emplace_back(2, 3, 0.004);
+  ties.emplace_back(5, 6, 0.004);
+  EXPECT_THAT(ClusterDrives(Weights(9, ties), {}),
+              ElementsAre(ElementsAre(0, 1, 2), ElementsAre(3, 4, 5), ElementsAre(6, 7, 8)));
 }
 
 TEST(Clustering, WithThetaZeroGivesConnectedComponents) {
-  const auto groups = ClusterDrives(Weights(4, {{0, 1, 1e-6}, {2, 3, 1.0}}), 0);
+  const auto groups = ClusterDrives(Weights(4, {{0, 1, 1e-6}, {2, 3, 1.0}}), Theta(0));
   EXPECT_THAT(groups, ElementsAre(ElementsAre(0, 1), ElementsAre(2, 3)));
 }
 

@@ -7,19 +7,25 @@
 #include <random>
 
 #include "tools/merge/association.hpp"
+#include "tools/merge/cosine_kernel.hpp"
 
 namespace mapweld::merge {
 namespace {
 
+std::int16_t Cosine(float distance) {
+  return static_cast<std::int16_t>(std::lround((1 - distance) * static_cast<float>(kCosineUnit)));
+}
+
 // Noise of mean 0.6 with a line of lower distances: row = first_row + k, col = first_col + slope * k.
-Distances Planted(int rows, int cols, int first_row, int first_col, double slope, int length, float dip) {
+Cosines Planted(int rows, int cols, int first_row, int first_col, double slope, int length, float dip) {
   std::mt19937 random(5);
-  Distances out{rows, cols, {}};
+  Cosines out{rows, cols, {}};
   for (int i = 0; i < rows * cols; ++i)
-    out.d.push_back(0.6F + 0.1F * (static_cast<float>(random() % 2001) / 1000.0F - 1));
+    out.c.push_back(Cosine(0.6F + 0.1F * (static_cast<float>(random() % 2001) / 1000.0F - 1)));
   for (int k = 0; k < length; ++k) {
     const int col = first_col + static_cast<int>(std::lround(slope * k));
-    out.d[static_cast<std::size_t>((first_row + k) * cols + col)] -= dip;
+    out.c[static_cast<std::size_t>((first_row + k) * cols + col)] +=
+        static_cast<std::int16_t>(std::lround(dip * kCosineUnit));
   }
   return out;
 }
@@ -30,7 +36,7 @@ TEST_P(SequenceMatch, FindsAPlantedLineAndItsDirection) {
   const double slope = GetParam();
   const int first_col = slope > 0 ? 20 : 80;
   // A dip within the noise of +-0.1: no single entry stands out.
-  const Distances distances = Planted(90, 110, 30, first_col, slope, 24, 0.1F);
+  const Cosines distances = Planted(90, 110, 30, first_col, slope, 24, 0.1F);
   const std::vector<Match> matches = MatchSequences(ComputeLikeness(distances), {});
   ASSERT_FALSE(matches.empty());
   const Match& best = matches.front();
@@ -44,7 +50,7 @@ TEST_P(SequenceMatch, FindsAPlantedLineAndItsDirection) {
 INSTANTIATE_TEST_SUITE_P(Slopes, SequenceMatch, ::testing::Values(1.0, 0.8, 1.25, -1.0, -0.8, -1.25));
 
 TEST(SequenceMatchBorders, FindAShortLineInACorner) {
-  const Distances distances = Planted(60, 60, 54, 0, 1.0, 6, 0.35F);
+  const Cosines distances = Planted(60, 60, 54, 0, 1.0, 6, 0.35F);
   const std::vector<Match> matches = MatchSequences(ComputeLikeness(distances), {});
   ASSERT_FALSE(matches.empty());
   EXPECT_GE(matches.front().a, 54);
@@ -58,8 +64,8 @@ TEST(SequenceMatchNoise, ProposesLittle) {
 }
 
 TEST(SingleMatch, FindsOneEntryFarBelowItsRowAndColumn) {
-  Distances distances = Planted(50, 40, 0, 0, 1, 0, 0);
-  distances.d[17 * 40 + 23] = 0.1F;
+  Cosines distances = Planted(50, 40, 0, 0, 1, 0, 0);
+  distances.c[17 * 40 + 23] = Cosine(0.1F);
   const std::vector<Match> matches = MatchSingles(ComputeLikeness(distances), {});
   ASSERT_FALSE(matches.empty());
   EXPECT_EQ(matches.front().a, 17);
@@ -67,42 +73,25 @@ TEST(SingleMatch, FindsOneEntryFarBelowItsRowAndColumn) {
 }
 
 TEST(SingleMatch, IsNotFooledByAKeyframeThatResemblesEverything) {
-  Distances distances = Planted(50, 40, 0, 0, 1, 0, 0);
-  for (std::size_t row = 0; row < 50; ++row) distances.d[row * 40 + 7] -= 0.3F;
-  distances.d[17 * 40 + 23] = 0.25F;
+  Cosines distances = Planted(50, 40, 0, 0, 1, 0, 0);
+  for (std::size_t row = 0; row < 50; ++row) distances.c[row * 40 + 7] += 2458;
+  distances.c[17 * 40 + 23] = Cosine(0.25F);
   const std::vector<Match> matches = MatchSingles(ComputeLikeness(distances), {});
   ASSERT_FALSE(matches.empty());
   EXPECT_EQ(matches.front().b, 23);
 }
 
-TEST(Association, AlwaysTriesTheEndsOfTheDrives) {
-  const std::vector<Match> matches = Associate(Planted(30, 20, 0, 0, 1, 0, 0), {});
-  for (const int a : {0, 29}) {
-    for (const int b : {0, 19}) {
-      EXPECT_TRUE(std::any_of(matches.begin(), matches.end(), [&](const Match& m) { return m.a == a && m.b == b; }));
-    }
-  }
+TEST(Candidates, IncludeAMeetingOfTheEndsThatLooksALittleAlike) {
+  Cosines cosines = Planted(30, 20, 0, 0, 1, 0, 0);
+  cosines.c[29 * 20 + 1] = Cosine(0.38F);
+  const std::vector<Match> matches = ProposeMatches(ComputeLikeness(cosines), {});
+  EXPECT_TRUE(
+      std::any_of(matches.begin(), matches.end(), [](const Match& m) { return m.a == 29 && m.b == 1 && m.ends; }));
 }
 
-TEST(Association, TakesEmptyDrives) {
-  EXPECT_TRUE(Associate(Distances{}, {}).empty());
-  EXPECT_TRUE(Associate(Distances{3, 0, {}}, {}).empty());
-}
-
-TEST(Difference, IsZeroForEqualPlacesAndOneWithoutADescription) {
-  Drive a;
-  a.name = "a";
-  a.keyframes.resize(3);
-  for (std::size_t i = 0; i < 1024; ++i) {
-    a.keyframes[0].place.descriptor.q[i] = static_cast<std::int8_t>((i * 37) % 251 - 125);
-    a.keyframes[1].place.descriptor.q[i] = static_cast<std::int8_t>(-a.keyframes[0].place.descriptor.q[i]);
-  }
-  a.keyframes[0].place.descriptor.scale = a.keyframes[1].place.descriptor.scale = 0.001F;
-  const Distances d = ComputeDistances(a, a);
-  EXPECT_NEAR(d.at(0, 0), 0, 1e-5);
-  EXPECT_NEAR(d.at(0, 1), 2, 1e-5);
-  EXPECT_EQ(d.at(2, 0), 1);
-  EXPECT_EQ(d.at(2, 2), 1);
+TEST(Candidates, OfNothingAreNone) {
+  EXPECT_TRUE(ProposeMatches(ComputeLikeness(Cosines{}), {}).empty());
+  EXPECT_TRUE(ProposeMatches(ComputeLikeness(Cosines{3, 0, {}}), {}).empty());
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class AgentLogs : public testing::Test {
     sim::SimOptions options;
     options.scenario = sim::ScenarioByName("four_drives");
     options.out = folder_ / name;
-    options.depth = sim::Depth::kSubmaps;
+    options.layout = sim::Layout::kSubmaps;
     options.seconds = 20;
     options.vehicles = {2};
     (void)sim::Simulate(options, [](int, double) {});

@@ -19,7 +19,7 @@ class DemoDrives : public testing::Test {
   static SharedStreet Shared(std::size_t a, std::size_t b) {  // by id
     return FindSharedStreet(world_->route(a - 1), world_->route(b - 1));
   }
-  static LanePath Lane(std::size_t vehicle) { return LanePath::Beside(world_->route(vehicle).centreline); }
+  static LanePath Lane(std::size_t vehicle) { return world_->PlanLane(vehicle); }
   static SimWorld* world_;
 };
 SimWorld* DemoDrives::world_ = nullptr;
@@ -29,7 +29,7 @@ TEST_F(DemoDrives, AreAboutAKilometreLong) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_GT(Lane(i).length_m(), 900) << i;
     EXPECT_LT(Lane(i).length_m(), 1200) << i;
-    EXPECT_LT(VehicleMotion(Lane(i), DrivingStyle{}, 1).duration_s(), 170) << i;
+    EXPECT_LT(VehicleMotion(Lane(i), DrivingStyle{}, world_->relief(), 1).duration_s(), 170) << i;
   }
 }
 
@@ -72,6 +72,7 @@ TEST_F(DemoDrives, NeverTouchAnything) {
   constexpr float kClearance_m = 1.1F;  // half a car and a hand's breadth
   for (std::size_t i = 0; i < 4; ++i) {
     const LanePath lane = Lane(i);
+    const RayCaster caster = world_->CasterOf(i);
     for (double s = 0; s < lane.length_m(); s += 0.5) {
       const Eigen::Vector2f p = lane.Position(s).cast<float>();
       for (const float height : {0.3F, 1.0F, 2.0F}) {
@@ -80,12 +81,12 @@ TEST_F(DemoDrives, NeverTouchAnything) {
           const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / RayPacket::kRays;
           rays.origin_x[k] = p.x();
           rays.origin_y[k] = p.y();
-          rays.origin_z[k] = height;
+          rays.origin_z[k] = height + static_cast<float>(world_->relief().Height(lane.Position(s)));
           rays.direction_x[k] = std::cos(angle);
           rays.direction_y[k] = std::sin(angle);
           rays.direction_z[k] = 0;
         }
-        world_->caster().Cast(rays, kClearance_m);
+        caster.Cast(rays, kClearance_m);
         for (std::size_t k = 0; k < RayPacket::kRays; ++k) {
           ASSERT_EQ(rays.distance_m[k], 0) << "vehicle " << i + 1 << " after " << s << " m at " << p.transpose()
                                            << ", surface " << static_cast<int>(rays.surface[k]);

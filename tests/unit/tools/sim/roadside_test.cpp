@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/unit/tools/sim/test_folder.hpp"
+#include "tools/sim/osm_town.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -16,25 +17,28 @@ class Roadside : public testing::Test {
     const LocalFrame frame({49.987244, 11.503882});
     town_ = new Town(ReadOsmTown(DataFolder() / "north-bayreuth.osm.gz", frame));
     mesh_ = new TownMesh;
-    AddRoadside(*town_, kArea, *mesh_);
+    AddTo(*mesh_);
   }
   static void TearDownTestSuite() {
     delete town_;
     delete mesh_;
   }
-  static const Box2 kArea;
+  static void AddTo(TownMesh& mesh) {
+    const Polyline diagonal{{-200, -200}, {200, 200}};
+    const Sight sight({&diagonal}, 200);
+    AddRoadside(PlotsAlongStreets(*town_, sight), Clearance(*town_, sight), mesh);
+  }
   static Town* town_;
   static TownMesh* mesh_;
 };
-const Box2 Roadside::kArea{{-300, -300}, {300, 300}};
 Town* Roadside::town_ = nullptr;
 TownMesh* Roadside::mesh_ = nullptr;
 
 TEST_F(Roadside, LinesTheStreetsWithEveryKindOfThing) {
-  // Triangles of one tree trunk: 14, of a lamp post: 16, of a car: 20, of a garden wall: 10.
+  // Triangles of one tree trunk: 14, of a lamp post: 16, of a garden wall or a hedge: 10.
   EXPECT_GT(Of(*mesh_, Surface::kTrunk).triangles.size(), 14U * 50);
   EXPECT_GT(Of(*mesh_, Surface::kPole).triangles.size(), 16U * 30);
-  EXPECT_GT(Of(*mesh_, Surface::kCar).triangles.size(), 20U * 50);
+  EXPECT_GT(Of(*mesh_, Surface::kHedge).triangles.size(), 10U * 50);
   EXPECT_GT(Of(*mesh_, Surface::kGardenWall).triangles.size(), 10U * 50);
   EXPECT_GT(Of(*mesh_, Surface::kFoliage).triangles.size(), 140U * 50);
 }
@@ -55,7 +59,7 @@ TEST_F(Roadside, KeepsEveryCarriagewayFree) {
 }
 
 TEST_F(Roadside, StaysOutOfTheHouses) {
-  for (const Surface kind : {Surface::kTrunk, Surface::kCar, Surface::kGardenWall, Surface::kPole}) {
+  for (const Surface kind : {Surface::kTrunk, Surface::kGardenWall, Surface::kHedge, Surface::kPole}) {
     for (const Eigen::Vector3f& vertex : Of(*mesh_, kind).vertices) {
       const Vec2d p = vertex.head<2>().cast<double>();
       for (const Building& building : town_->buildings) {
@@ -68,7 +72,7 @@ TEST_F(Roadside, StaysOutOfTheHouses) {
 
 TEST_F(Roadside, IsTheSameEveryTime) {
   TownMesh again;
-  AddRoadside(*town_, kArea, again);
+  AddTo(again);
   for (std::size_t i = 0; i < kSurfaces; ++i) EXPECT_EQ(again[i].vertices, (*mesh_)[i].vertices);
 }
 

@@ -34,7 +34,7 @@ TEST_F(ScenarioFile, SortsVehiclesAndFindsTheTownBesideItself) {
   ASSERT_EQ(scenario.vehicles.size(), 2U);
   EXPECT_EQ(scenario.vehicles[0].id, 1);
   EXPECT_EQ(scenario.vehicles[1].waypoints.size(), 2U);
-  EXPECT_EQ(scenario.town, folder_ / "t.osm");
+  EXPECT_EQ(std::get<std::filesystem::path>(scenario.town), folder_ / "t.osm");
   EXPECT_EQ(scenario.seed, 1U);
 }
 
@@ -50,10 +50,31 @@ TEST_F(ScenarioFile, NamesWhatIsWrong) {
   EXPECT_THAT(MessageOf([] { (void)ReadScenario("missing.json"); }), HasSubstr("cannot open scenario missing.json"));
 }
 
-TEST(DemoScenario, ComesWithTheProgram) {
-  const Scenario scenario = ReadScenario(ScenarioByName("four_drives"));
-  EXPECT_EQ(scenario.vehicles.size(), 4U);
-  EXPECT_TRUE(std::filesystem::exists(scenario.town));
+constexpr const char* kInvented =
+    R"({"name":"n","town":{"style":"suburb","size_m":900,"seed":7},"survey":{"drives":1,"zones":1,"zone_radius_m":400,
+        "min_length_m":500,"max_length_m":500,"total_length_m":500}})";
+
+TEST_F(ScenarioFile, MayInventItsTown) {
+  const Scenario scenario = Read(kInvented);
+  const auto& plan = std::get<TownPlan>(scenario.town);
+  EXPECT_EQ(plan.style, "suburb");
+  EXPECT_EQ(plan.size_m, 900);
+  EXPECT_EQ(plan.seed, 7U);
+  std::string text = kInvented;
+  text.replace(text.find("suburb"), 6, "desert");
+  EXPECT_THAT(MessageOf([&] { (void)Read(text); }), HasSubstr("no style of town 'desert'"));
+}
+
+TEST(Scenarios, ComeWithTheProgramTogetherWithTheirTowns) {
+  for (const auto& entry : std::filesystem::directory_iterator(DataFolder())) {
+    if (entry.path().extension() != ".json") continue;
+    const Scenario scenario = ReadScenario(ScenarioByName(entry.path().stem().string()));
+    const auto* file = std::get_if<std::filesystem::path>(&scenario.town);
+    EXPECT_TRUE(file == nullptr || std::filesystem::exists(*file)) << entry.path();
+    const bool to_train_on = entry.path().stem().string().starts_with("train_");
+    const bool bayreuth = file != nullptr && file->filename() == "north-bayreuth.osm.gz";
+    EXPECT_FALSE(to_train_on && bayreuth) << "nobody trains on the town of the evaluation";
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/unit/tools/sim/test_folder.hpp"
@@ -85,6 +86,32 @@ TEST_F(Survey, DependsOnTheSeedOnly) {
 TEST_F(Survey, SaysWhenTheTownIsTooSmall) {
   plan_.zones = 7;
   EXPECT_THAT(MessageOf([&] { (void)Plan(); }), HasSubstr("room for 2 zones"));
+}
+
+TEST_F(Survey, DrivesEveryRouteAsOftenAsAskedForwardsAndBackwards) {
+  plan_.runs = 4;
+  const auto drives = Plan();
+  ASSERT_EQ(drives.size(), 8U);
+  EXPECT_EQ(drives[0].path.nodes, drives[2].path.nodes);
+  auto back = drives[1].path.nodes;
+  std::reverse(back.begin(), back.end());
+  EXPECT_EQ(drives[0].path.nodes, back);
+  EXPECT_EQ(drives[1].path.centreline.front(), drives[0].path.centreline.back());
+  EXPECT_NE(drives[0].path.nodes, drives[4].path.nodes) << "the second route";
+}
+
+TEST_F(Survey, GoesStraightOnWhenAskedToAndSharesNoStreet) {
+  plan_ = {6, 1, 420, 200, 300, 300, 6 * 300.0};
+  plan_.straight_on = true;
+  const auto drives = Plan();
+  for (std::size_t a = 0; a < drives.size(); ++a) {
+    EXPECT_NEAR(Length(drives[a].path.centreline), 300, 6);
+    EXPECT_NEAR((drives[a].path.centreline.back() - drives[a].path.centreline.front()).norm(), 300, 6) << "straight";
+    for (std::size_t b = 0; b < a; ++b) {
+      const SharedStreet shared = FindSharedStreet(drives[a].path, drives[b].path);
+      EXPECT_EQ(shared.same_direction_m + shared.opposite_direction_m, 0);
+    }
+  }
 }
 
 }  // namespace

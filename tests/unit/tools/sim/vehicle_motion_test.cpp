@@ -14,7 +14,7 @@ const Polyline kStreet{{0, 0}, {120, 0}, {120, 80}, {200, 90}, {230, 84}, {260, 
 class Motion : public testing::Test {
  protected:
   const LanePath lane_ = LanePath::Beside(kStreet);
-  const VehicleMotion motion_{lane_, DrivingStyle{}, 42};
+  const VehicleMotion motion_{lane_, DrivingStyle{}, Relief(0, 1), 42};
 };
 
 TEST_F(Motion, KeepsTheLimitsOfItsDrivingStyle) {
@@ -41,8 +41,8 @@ TEST_F(Motion, NeverTurnsTighterThanACar) {
 
 TEST_F(Motion, DrivesInTheRightHandLane) {
   const Vec2d on_first_street = lane_.Position(60);
-  EXPECT_NEAR(on_first_street.y(), -LanePath::kLaneOffset_m, 0.5);
-  EXPECT_NEAR(lane_.Position(0).y(), -LanePath::kLaneOffset_m, 0.05);
+  EXPECT_NEAR(on_first_street.y(), -LaneHabit{}.offset_m, 0.5);
+  EXPECT_NEAR(lane_.Position(0).y(), -LaneHabit{}.offset_m, 0.05);
 }
 
 TEST_F(Motion, StandsStillAtBothEnds) {

@@ -76,7 +76,7 @@ TEST(Kill, AtAnyMomentLosesNothingAcknowledged) {
   const auto keyframes = city.Keyframes(1);
   for (const auto& [k, keyframe] : keyframes) {
     ASSERT_EQ(Encode(keyframe), Encode(test::SmallKeyframe(0, k)));
-    ASSERT_EQ(city.Submap(1, k)->points, test::SmallSubmap(0, k).points);
+    ASSERT_TRUE(city.Submap(1, k)->points == test::SmallSubmap(0, k).points);
   }
   std::printf("%d kills, %d keyframes acknowledged, %zu there\n", kills, acknowledged, keyframes.size());
 }

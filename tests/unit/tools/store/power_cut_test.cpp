@@ -129,7 +129,7 @@ TEST(FailingDisk, AtAnyOperationKeepsWhatWasThereAndGoesOnWhenItWorksAgain) {
   CrashDisk whole;
   const Bytes end = RunToTheEnd(whole.vfs());
   int failures = 0;
-  for (const int code : {SQLITE_FULL, SQLITE_IOERR_WRITE, SQLITE_IOERR_FSYNC}) {
+  for (const int code : {SQLITE_FULL, SQLITE_IOERR_WRITE}) {
     for (const bool for_ever : {false, true}) {
       for (std::size_t n = 0;; ++n) {
         CrashDisk disk;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/relief.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "tools/sim/hash_noise.hpp"
+
+namespace mapweld::sim {
+
+Relief::Relief(double amplitude_m, std::uint64_t seed) {
+  for (std::size_t i = 0; i < waves_.size(); ++i) {
+    const auto draw = [&](std::uint64_t what, double low, double high) {
+      return Uniform(Hash(seed, 0x4E11EF + i, what), low, high);
+    };
+    const double direction = draw(1, 0, 2 * std::numbers::pi);
+    const double length_m = draw(2, 300, 900);
+    waves_[i] = {2 * std::numbers::pi / length_m * Vec2d(std::cos(direction), std::sin(direction)),
+                 amplitude_m * std::sqrt(2.0 / static_cast<double>(waves_.size())), draw(3, 0, 2 * std::numbers::pi)};
+  }
+}
+
+double Relief::Height(const Vec2d& p) const {
+  double height = 0;
+  for (const Wave& w : waves_) height += w.amplitude_m * std::sin(w.direction_per_m.dot(p) + w.phase);
+  return height;
+}
+
+Vec2d Relief::Slope(const Vec2d& p) const {
+  Vec2d slope = Vec2d::Zero();
+  for (const Wave& w : waves_) {
+    slope += w.amplitude_m * std::cos(w.direction_per_m.dot(p) + w.phase) * w.direction_per_m;
+  }
+  return slope;
+}
+
+void Relief::Lift(TownMesh* mesh) const {
+  for (Mesh& kind : *mesh) {
+    for (Eigen::Vector3f& vertex : kind.vertices) {
+      vertex.z() += static_cast<float>(Height(vertex.head<2>().cast<double>()));
+    }
+  }
+}
+
+}  // namespace mapweld::sim
