@@ -9,7 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "tools/eval/arrivals_command.hpp"
+#include "tools/eval/growth_command.hpp"
 #include "tools/eval/merge_score.hpp"
+#include "tools/eval/places_command.hpp"
+#include "tools/eval/viewpoint_command.hpp"
 #include "tools/io/trajectory_file.hpp"
 #include "tools/io/unique_names.hpp"
 
@@ -73,15 +77,21 @@ std::string ErrorTable(const GroupError& error) {
     return fmt::format("{:<{}} {:>8} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f}", name, width, s.count, s.rmse_m, s.mean_m,
                        s.median_m, s.max_m);
   };
-  std::string table = fmt::format("{:<{}} {:>8} {:>10} {:>10} {:>10} {:>10} {:>11}\n", "vehicle", width, "poses",
-                                  "rmse (m)", "mean (m)", "median (m)", "max (m)", "alone (m)");
+  std::string table =
+      fmt::format("{:<{}} {:>8} {:>10} {:>10} {:>10} {:>10} {:>11} {:>9} {:>9} {:>9}\n", "vehicle", width, "poses",
+                  "rmse (m)", "mean (m)", "median (m)", "max (m)", "alone (m)", "RPE (m)", "RPE (deg)", "drift (%)");
   for (const VehicleError& vehicle : error.vehicles) {
-    table += row(vehicle.name, vehicle.together) + fmt::format(" {:>11.3f}\n", vehicle.alone.rmse_m);
+    const auto number = [](std::size_t of, double value) { return of > 0 ? fmt::format("{:.3f}", value) : "-"; };
+    table += row(vehicle.name, vehicle.together) +
+             fmt::format(" {:>11.3f} {:>9} {:>9} {:>9}\n", vehicle.alone.rmse_m,
+                         number(vehicle.step.steps, vehicle.step.translation_m),
+                         number(vehicle.step.steps, vehicle.step.rotation_deg),
+                         number(vehicle.drift.segments, vehicle.drift.translation_percent));
   }
   table += row("all", error.all) + '\n';
   table +=
       "Errors of position after one SE(3) alignment common to all vehicles; alone: rmse after an alignment of its "
-      "own.\n";
+      "own.\nRPE: rms error of the motion over 10 m of path. drift: mean over KITTI's segments of 100 to 800 m.\n";
   for (const VehicleError& vehicle : error.vehicles) {
     if (vehicle.unmatched == 0) continue;
     table +=
@@ -96,6 +106,14 @@ std::string ErrorJson(const GroupError& error) {
     vehicles.push_back({{"name", vehicle.name},
                         {"together", StatisticsJson(vehicle.together)},
                         {"alone", StatisticsJson(vehicle.alone)},
+                        {"relative_pose_error",
+                         {{"steps", vehicle.step.steps},
+                          {"translation_m", vehicle.step.translation_m},
+                          {"rotation_deg", vehicle.step.rotation_deg}}},
+                        {"kitti_drift",
+                         {{"segments", vehicle.drift.segments},
+                          {"translation_percent", vehicle.drift.translation_percent},
+                          {"rotation_deg_per_m", vehicle.drift.rotation_deg_per_m}}},
                         {"unmatched", vehicle.unmatched}});
   }
   const geom::Pose3& pose = error.truth_T_estimate;
@@ -149,6 +167,10 @@ void AddEvalCommand(CLI::App& app) {
   eval->require_subcommand(1);
   AddTrajectories(*eval);
   AddMerge(*eval);
+  AddArrivalsCommand(*eval);
+  AddGrowthCommand(*eval);
+  AddPlacesCommand(*eval);
+  AddViewpointCommand(*eval);
 }
 
 }  // namespace mapweld::eval

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "tools/eval/json_file.hpp"
 
 namespace mapweld::eval {
 namespace {
@@ -17,19 +17,8 @@ NamePair Ordered(std::string a, std::string b) {
   return a < b ? NamePair{std::move(a), std::move(b)} : NamePair{std::move(b), std::move(a)};
 }
 
-// Parses `file` and hands it to `read`; whatever goes wrong, the message names the file.
-template <class Read>
-void WithJson(const std::filesystem::path& file, const Read& read) {
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error(fmt::format("cannot open {}", file.string()));
-  try {
-    read(Json::parse(stream));
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(fmt::format("{} is not what it should be: {}", file.string(), error.what()));
-  }
-}
+}  // namespace
 
-// The zone of every drive: the smallest name that is connected with it.
 std::map<std::string, std::string> ZonesOf(const MergeTruth& truth) {
   std::map<std::string, std::string> parent;
   for (const std::string& name : truth.names) parent[name] = name;
@@ -47,8 +36,6 @@ std::map<std::string, std::string> ZonesOf(const MergeTruth& truth) {
   for (const std::string& name : truth.names) zones[name] = root(name);
   return zones;
 }
-
-}  // namespace
 
 MergeTruth ReadMergeTruth(const std::filesystem::path& scenario_json) {
   MergeTruth truth;

@@ -31,6 +31,9 @@ struct MergeOutcome {
 MergeTruth ReadMergeTruth(const std::filesystem::path& scenario_json);
 MergeOutcome ReadMergeOutcome(const std::filesystem::path& folder);
 
+// The zone of every drive: the smallest name that is connected with it by overlaps and crossings.
+std::map<std::string, std::string> ZonesOf(const MergeTruth& truth);
+
 struct MissedOverlap {
   NamePair pair;
   double shared_m = 0;

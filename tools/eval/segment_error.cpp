@@ -18,6 +18,16 @@ std::vector<double> PathLengths(const std::vector<io::StampedPose>& poses) {
   return path_m;
 }
 
+constexpr double kStep_m = 10;
+
+// What is left of the estimated motion between two poses when the true one is taken away.
+geom::Pose3 MotionError(const std::vector<io::StampedPose>& truth, const std::vector<io::StampedPose>& estimate,
+                        std::size_t first, std::size_t last) {
+  const geom::Pose3 true_motion = truth[first].world_T_body.Inverse() * truth[last].world_T_body;
+  const geom::Pose3 motion = estimate[first].world_T_body.Inverse() * estimate[last].world_T_body;
+  return motion.Inverse() * true_motion;
+}
+
 }  // namespace
 
 SegmentError SegmentDrift(const std::vector<io::StampedPose>& truth, const std::vector<io::StampedPose>& estimate) {
@@ -31,9 +41,7 @@ SegmentError SegmentDrift(const std::vector<io::StampedPose>& truth, const std::
     for (double length_m = 100; length_m <= 800; length_m += 100) {
       while (last < truth.size() && path_m[last] < path_m[first] + length_m) ++last;
       if (last == truth.size()) break;
-      const geom::Pose3 true_motion = truth[first].world_T_body.Inverse() * truth[last].world_T_body;
-      const geom::Pose3 motion = estimate[first].world_T_body.Inverse() * estimate[last].world_T_body;
-      const geom::Pose3 difference = motion.Inverse() * true_motion;
+      const geom::Pose3 difference = MotionError(truth, estimate, first, last);
       ++error.segments;
       error.translation_percent += 100 * difference.t.norm() / length_m;
       error.rotation_deg_per_m += geom::LogSo3(difference.q).norm() * kDegrees / length_m;
@@ -42,6 +50,25 @@ SegmentError SegmentDrift(const std::vector<io::StampedPose>& truth, const std::
   if (error.segments == 0) return error;
   error.translation_percent /= static_cast<double>(error.segments);
   error.rotation_deg_per_m /= static_cast<double>(error.segments);
+  return error;
+}
+
+StepError RelativePoseError(const std::vector<io::StampedPose>& truth, const std::vector<io::StampedPose>& estimate) {
+  const std::vector<double> path_m = PathLengths(truth);
+  StepError error;
+  std::size_t last = 0;
+  for (std::size_t first = 0; first < truth.size(); ++first) {
+    while (last < truth.size() && path_m[last] < path_m[first] + kStep_m) ++last;
+    if (last == truth.size()) break;
+    const geom::Pose3 difference = MotionError(truth, estimate, first, last);
+    const double turn_deg = geom::LogSo3(difference.q).norm() * kDegrees;
+    ++error.steps;
+    error.translation_m += difference.t.squaredNorm();
+    error.rotation_deg += turn_deg * turn_deg;
+  }
+  if (error.steps == 0) return error;
+  error.translation_m = std::sqrt(error.translation_m / static_cast<double>(error.steps));
+  error.rotation_deg = std::sqrt(error.rotation_deg / static_cast<double>(error.steps));
   return error;
 }
 

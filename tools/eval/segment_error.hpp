@@ -20,6 +20,15 @@ struct SegmentError {
 // Poses of truth and estimate at the same places in the lists.
 SegmentError SegmentDrift(const std::vector<io::StampedPose>& truth, const std::vector<io::StampedPose>& estimate);
 
+// Relative pose error (Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012), over 10 m of
+// true path instead of a fixed time, so that standing still does not count: root mean squares, one start a pose.
+struct StepError {
+  std::size_t steps = 0;
+  double translation_m = 0;
+  double rotation_deg = 0;
+};
+StepError RelativePoseError(const std::vector<io::StampedPose>& truth, const std::vector<io::StampedPose>& estimate);
+
 // Angle between the estimated and the true direction of gravity in the body frame, degrees, one per pose.
 std::vector<double> GravityErrorsDeg(const std::vector<io::StampedPose>& truth,
                                      const std::vector<io::StampedPose>& estimate);

@@ -14,10 +14,12 @@ namespace {
 constexpr DurationNs kEndSlack = Milliseconds(10);
 constexpr DurationNs kLongestGap = Milliseconds(1000);
 
-// Positions with the truth at the same times.
+// Positions and poses with the truth at the same times.
 struct Matched {
   std::vector<geom::Vec3d> truth;
   std::vector<geom::Vec3d> estimate;
+  std::vector<io::StampedPose> truth_poses;
+  std::vector<io::StampedPose> estimate_poses;
 };
 
 Matched Match(const Vehicle& vehicle) {
@@ -27,12 +29,21 @@ Matched Match(const Vehicle& vehicle) {
     if (!TruthAt(vehicle.truth, pose.t, &truth)) continue;
     matched.truth.push_back(truth.t);
     matched.estimate.push_back(pose.world_T_body.t);
+    matched.truth_poses.push_back({pose.t, truth});
+    matched.estimate_poses.push_back(pose);
   }
   if (matched.truth.empty()) {
     throw std::runtime_error(
         fmt::format("{}: no estimated pose has truth at its time; check that both use the same clock", vehicle.name));
   }
   return matched;
+}
+
+// Files with positions alone have one rotation throughout; a vehicle that drives has not.
+bool HasRotations(const std::vector<io::StampedPose>& poses) {
+  return std::any_of(poses.begin(), poses.end(), [&](const io::StampedPose& pose) {
+    return pose.world_T_body.q.angularDistance(poses.front().world_T_body.q) > 1e-9;
+  });
 }
 
 std::vector<double> Distances(const Matched& matched, const geom::Pose3& truth_T_estimate) {
@@ -120,6 +131,10 @@ GroupError EvaluateGroup(const std::vector<Vehicle>& group) {
     vehicle.errors_m = Distances(matched[i], error.truth_T_estimate);
     vehicle.together = Statistics(vehicle.errors_m);
     vehicle.alone = Statistics(Distances(matched[i], AlignRigidly(matched[i].truth, matched[i].estimate)));
+    if (HasRotations(matched[i].truth_poses) && HasRotations(matched[i].estimate_poses)) {
+      vehicle.step = RelativePoseError(matched[i].truth_poses, matched[i].estimate_poses);
+      vehicle.drift = SegmentDrift(matched[i].truth_poses, matched[i].estimate_poses);
+    }
     vehicle.unmatched = group[i].estimate.size() - matched[i].truth.size();
     error.vehicles.push_back(std::move(vehicle));
   }

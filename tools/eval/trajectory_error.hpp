@@ -14,6 +14,7 @@
 
 #include "core/base/time.hpp"
 #include "core/geom/pose3.hpp"
+#include "tools/eval/segment_error.hpp"
 #include "tools/io/tum.hpp"
 
 namespace mapweld::eval {
@@ -37,8 +38,12 @@ struct Vehicle {
 
 struct VehicleError {
   std::string name;
-  ErrorStatistics together;      // after the common alignment
-  ErrorStatistics alone;         // after an alignment of its own
+  ErrorStatistics together;  // after the common alignment
+  ErrorStatistics alone;     // after an alignment of its own
+  // The motion alone, whatever the alignment. Of nothing (no steps, no segments) when truth or estimate has positions
+  // only.
+  StepError step;
+  SegmentError drift;
   std::size_t unmatched = 0;     // estimated poses at times without truth
   std::vector<double> errors_m;  // of the matched poses in order, after the common alignment
 };

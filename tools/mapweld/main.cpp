@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/describe/describe_command.hpp"
 #include "tools/doctor/doctor_command.hpp"
 #include "tools/eval/eval_command.hpp"
 #include "tools/mapweld/merge_command.hpp"
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   mapweld::merge::AddMergeCommand(app);
   mapweld::serve::AddServeCommand(app);
+  mapweld::describe::AddDescribeCommand(app);
   mapweld::store::AddStoreCommands(app);
   mapweld::eval::AddEvalCommand(app);
   mapweld::sim::AddSimCommand(app);

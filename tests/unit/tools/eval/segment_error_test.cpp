@@ -38,6 +38,20 @@ TEST(SegmentError, AShortDriveHasNoSegments) {
   EXPECT_EQ(SegmentDrift(truth, truth).segments, 0U);
 }
 
+// 1 m a pose: over 10 m a scale of 1.01 is 0.1 m off, a turn of 1e-4 rad/m is 1e-3 rad.
+TEST(RelativePoseError, IsWhatTenMetresAreOff) {
+  EXPECT_NEAR(RelativePoseError(Straight(1, 0), Straight(1.01, 0)).translation_m, 0.1, 1e-9);
+  EXPECT_NEAR(RelativePoseError(Straight(1, 0), Straight(1, 1e-4)).rotation_deg, 1e-3 * 180 / M_PI, 1e-6);
+  EXPECT_EQ(RelativePoseError(Straight(1, 0), Straight(1, 0)).steps, 991U);
+}
+
+TEST(RelativePoseError, DoesNotMindWhereTheDriveLies) {
+  auto moved = Straight(1, 1e-3);
+  for (io::StampedPose& pose : moved)
+    pose.world_T_body = geom::Pose3{{5, 6, 7}, geom::ExpSo3({1, 2, 3})} * pose.world_T_body;
+  EXPECT_NEAR(RelativePoseError(Straight(1, 1e-3), moved).translation_m, 0, 1e-9);
+}
+
 TEST(GravityError, IsTheTiltWhateverTheHeading) {
   const std::vector<io::StampedPose> truth{{{0}, {}}};
   const geom::Quatd tilted(Eigen::AngleAxisd(1.0, geom::Vec3d::UnitZ()) *
