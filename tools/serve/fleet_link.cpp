@@ -8,6 +8,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 
 #include "drivers/messages/channel.hpp"
 #include "drivers/messages/codec.hpp"
@@ -63,7 +64,8 @@ void FleetLink::OnMessage(const lcm::ReceiveBuffer* received, const std::string&
       ++refused_;
       return;
     }
-    {
+    // Keyframes and submaps may be of an earlier boot, from the agent's spool; health is always of the present one.
+    if constexpr (std::is_same_v<decltype(message), mapweldlcm::health_t>) {
       const std::lock_guard lock(mutex_);
       presence_.Heard({message.agent_id, message.epoch}, Presence::Clock::now());
     }

@@ -23,13 +23,16 @@ TEST(Presence, AnAgentIsHereUntilItHasBeenSilentForAWhile) {
   EXPECT_TRUE(presence.IsHere({3, 1}, kStart + 1h)) << "it has returned";
 }
 
-TEST(Presence, ARestartedAgentIsNotAskedForItsEarlierDrive) {
+TEST(Presence, ARestartedAgentIsAskedForItsEarlierDriveWhileItSpeaks) {
   Presence presence;
   presence.Heard({3, 1}, kStart);
   presence.Heard({3, 2}, kStart + 100ms);
   presence.Heard({3, 1}, kStart + 200ms);  // overtaken on the way
-  EXPECT_FALSE(presence.IsHere({3, 1}, kStart + 300ms));
+  EXPECT_TRUE(presence.IsHere({3, 1}, kStart + 300ms)) << "its spool has it";
   EXPECT_TRUE(presence.IsHere({3, 2}, kStart + 300ms));
+  presence.Heard({3, 2}, kStart + 1h);
+  EXPECT_TRUE(presence.IsHere({3, 1}, kStart + 1h));
+  EXPECT_FALSE(presence.IsHere({3, 3}, kStart + 1h)) << "never heard, and nothing later either";
   EXPECT_THAT(presence.twins(), IsEmpty());
 }
 
