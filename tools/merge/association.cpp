@@ -6,26 +6,16 @@
 namespace mapweld::merge {
 namespace {
 
-// Drives begin where others ended, and fleets start from one yard: a few keyframes only, and incomplete ones, so less
-// likeness is asked for than anywhere else. The best entry of each corner of the matrix.
-void AddEnds(const Likeness& likeness, const AssociationConfig& config, std::vector<Match>* matches) {
-  const int height = std::min(config.end_keyframes, likeness.rows);
-  const int width = std::min(config.end_keyframes, likeness.cols);
-  for (const int first_row : {likeness.rows - height, 0}) {
-    for (const int first_col : {0, likeness.cols - width}) {
-      Match best;
-      best.score = -1;
-      best.ends = true;
-      for (int row = first_row; row < first_row + height; ++row) {
-        for (int col = first_col; col < first_col + width; ++col) {
-          const double score = likeness.Score(row, col);
-          if (score <= best.score) continue;
-          best.score = score;
-          best.a = row;
-          best.b = col;
-        }
-      }
-      if (best.score >= config.min_end_score) matches->push_back(best);
+// Drives begin where others ended, and fleets start from one yard. Such a meeting shows a few keyframes only, and
+// incomplete ones, whose descriptors may be unlike: it is always proposed, and registration decides.
+void AddEnds(const Likeness& likeness, std::vector<Match>* matches) {
+  for (const int a : {likeness.rows - 1, 0}) {
+    for (const int b : {0, likeness.cols - 1}) {
+      Match match;
+      match.a = a;
+      match.b = b;
+      match.ends = true;
+      matches->push_back(match);
     }
   }
 }
@@ -43,7 +33,7 @@ std::vector<Match> ProposeMatches(const Likeness& likeness, const AssociationCon
   if (likeness.d.empty()) return {};
   std::vector<Match> found = MatchSequences(likeness, config);
   for (const Match& match : MatchSingles(likeness, config)) found.push_back(match);
-  AddEnds(likeness, config, &found);
+  AddEnds(likeness, &found);
   std::vector<Match> matches;
   for (const Match& match : found) {
     const auto known = std::find_if(matches.begin(), matches.end(),

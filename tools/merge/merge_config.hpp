@@ -17,8 +17,6 @@ struct AssociationConfig {
   int max_sequence = 16;
   double min_sequence_score = 3.5;  // robust standard deviations above what unrelated stretches reach
   double min_single_score = 2.0;    // the same for one keyframe
-  double min_end_score = 2.0;       // the same where drives begin and end
-  int end_keyframes = 4;            // that count as an end
   int max_sequence_matches = 24;    // per pair of drives
   int max_single_matches = 16;      // per pair of drives
 };

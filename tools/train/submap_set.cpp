@@ -66,21 +66,23 @@ void PutKeyframe(std::ofstream* file, int drive, const geom::Pose3& world_T_body
 
 void Write(const Arguments& arguments) {
   merge::TerminalProgress progress("train_submaps");
-  merge::MergeInputs inputs(arguments.inputs, 0, &progress);
+  const std::vector<merge::MergeInput> inputs = merge::OpenInputs(arguments.inputs, 0, &progress);
   std::ofstream file(arguments.out, std::ios::binary);
   file.write("MWSUBMAP", 8);
   std::size_t written = 0;
-  for (std::size_t d = 0; d < inputs.drives().size(); ++d) {
-    const std::vector<geom::Pose3> poses = TruePoses(inputs.drives()[d], arguments.truth_folder);
+  for (std::size_t d = 0; d < inputs.size(); ++d) {
+    progress.SetSubject(inputs[d].name);
+    const merge::BuiltDrive built = inputs[d].build();
+    const std::vector<geom::Pose3> poses = TruePoses(built.drive, arguments.truth_folder);
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      const auto cloud = inputs.Find({.drive = static_cast<int>(d), .keyframe = static_cast<int>(k)});
+      const auto cloud = built.submap(static_cast<int>(k));
       if (cloud == nullptr) continue;
       PutKeyframe(&file, static_cast<int>(d), poses[k], *cloud);
       ++written;
     }
   }
   if (!file.flush()) throw std::runtime_error(fmt::format("cannot write {}", arguments.out.string()));
-  fmt::print("{}: {} submaps of {} drives\n", arguments.out.string(), written, inputs.drives().size());
+  fmt::print("{}: {} submaps of {} drives\n", arguments.out.string(), written, inputs.size());
 }
 
 }  // namespace
