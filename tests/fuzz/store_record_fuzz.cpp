@@ -19,8 +19,9 @@ void Try(std::span<const std::uint8_t> body) {
 }
 
 Bytes WithTable(store::Table table, const store::Bytes& body) {
-  Bytes bytes{static_cast<std::uint8_t>(table)};
-  bytes.insert(bytes.end(), body.begin(), body.end());
+  Bytes bytes(1 + body.size());
+  bytes[0] = static_cast<std::uint8_t>(table);
+  std::copy(body.begin(), body.end(), bytes.begin() + 1);
   return bytes;
 }
 

@@ -102,9 +102,12 @@ struct CrashVfs {
     if (out_flags != nullptr) *out_flags = flags;
     return SQLITE_OK;
   }
-  static int Delete(sqlite3_vfs* vfs, const char* name, int) {
+  static int Delete(sqlite3_vfs* vfs, const char* name, int sync_directory) {
     if (!Disk(vfs)->files_.contains(name)) return SQLITE_IOERR_DELETE_NOENT;
     if (const int code = Disk(vfs)->Count({CrashDisk::Operation::kDelete, name, 0, {}})) return code;
+    if (sync_directory != 0) {
+      if (const int code = Disk(vfs)->Count({CrashDisk::Operation::kSync, name, 0, {}})) return code;
+    }
     Disk(vfs)->files_.erase(name);
     return SQLITE_OK;
   }

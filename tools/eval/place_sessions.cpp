@@ -47,9 +47,8 @@ KeyframeSource WithTruth(const fs::path& folder, KeyframeSource source) {
 
 void ForEachSession(const SessionArguments& arguments, merge::TerminalProgress* progress,
                     const std::function<void(KeyframeSource)>& visit) {
-  const bool any_log = std::any_of(arguments.inputs.begin(), arguments.inputs.end(), [](const std::string& input) {
-    return fs::path(input).extension() == ".lcm";
-  });
+  const bool any_log = std::any_of(arguments.inputs.begin(), arguments.inputs.end(),
+                                   [](const std::string& input) { return fs::path(input).extension() == ".lcm"; });
   const auto check = [&](std::size_t sessions) {
     if (arguments.truth_folder.empty() && any_log && sessions > 1) {
       throw std::runtime_error("each agent's log has a frame of its own; to compare several, give --truth-folder");

@@ -28,7 +28,7 @@ struct MergeArguments {
   std::vector<std::string> truth;
   std::filesystem::path truth_folder;
   int threads = 0;
-  bool exact = false;
+  bool sketches = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -73,7 +73,7 @@ void RunMerge(const MergeArguments& arguments) {
 
   MergeConfig config;
   config.threads = arguments.threads;
-  config.association.exact = arguments.exact;
+  config.association.sketches = arguments.sketches;
   const MergeResult result = city->Merge(config, &progress);
 
   report::OutcomeInput outcome;
@@ -106,7 +106,8 @@ void AddMergeCommand(CLI::App& app) {
                       "NAME=FILE: true trajectory of a recording, for the errors in the report");
   command->add_option("--truth-folder", arguments->truth_folder,
                       "folder with NAME.tum (or KITTI NAME.txt) for --truth");
-  command->add_flag("--exact", arguments->exact, "compare all pairs of drives in full, whatever their sketches say");
+  command->add_flag("--sketches", arguments->sketches,
+                    "for many drives: compare only pairs whose 256-bit sketches agree; may lose short meetings");
   command->add_option("--threads", arguments->threads, "0: all of the machine; never changes the result")
       ->check(CLI::Range(0, 1024));
   command->callback([arguments] { RunMerge(*arguments); });

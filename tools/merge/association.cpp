@@ -58,7 +58,7 @@ bool SketchesAgree(const DrivePlaces& a, const DrivePlaces& b, const Association
 Association Associate(const DrivePlaces& a, const DrivePlaces& b, const AssociationConfig& config) {
   Association out;
   if (a.descriptors.count == 0 || b.descriptors.count == 0) return out;
-  if (!config.exact && !SketchesAgree(a, b, config, &out.evidence)) return out;
+  if (config.sketches && !SketchesAgree(a, b, config, &out.evidence)) return out;
   out.compared = true;
   const Cosines cosines = ComputeCosines(a.descriptors, b.descriptors);
   out.matches = ProposeMatches(ComputeLikeness(cosines), config);

@@ -8,7 +8,7 @@ namespace mapweld::merge {
 
 // Which keyframes of two drives could show the same place.
 struct AssociationConfig {
-  bool exact = false;                // compare every pair of drives in full, whatever the sketches say
+  bool sketches = false;             // compare only those pairs of drives in full whose sketches agree
   int sketch_step = 1;               // keyframes from one sketch of the first drive that is compared to the next
   int min_sketched_keyframes = 24;   // a shorter drive is always compared in full: its mean would hide its places
   double min_sketch_sequence = 5.0;  // robust standard deviations; from here on a pair is compared in full

@@ -144,7 +144,9 @@ void Database::Open(Mode mode, const char* vfs) {
                     path_.string(), version, kSchemaVersion));
   }
   if (!empty && version < 1) Fail(SQLITE_CORRUPT);
-  Execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;");
+  // EXTRA until the file is in WAL mode: a rollback journal whose deletion a power cut took back would undo even what was
+  // committed after it.
+  Execute("PRAGMA synchronous=EXTRA; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;");
   Execute("BEGIN EXCLUSIVE; COMMIT;");  // takes the lock, for good
   if (version < kSchemaVersion) {
     Transaction([&] { Execute(UpgradeFrom(empty ? 0 : version)); });
@@ -264,6 +266,12 @@ std::vector<std::string> Database::CheckStructure() {
   while (statement.Step()) {
     const std::string line = statement.Text(0);
     if (line != "ok") problems.push_back(line);
+  }
+  // A changed letter of a definition can make SQLite read other keys than were written.
+  Statement tables(this, "SELECT name, sql FROM sqlite_schema");
+  while (tables.Step()) {
+    const std::string name = tables.Text(0);
+    if (tables.Text(1) != TableDefinition(name)) problems.push_back("table " + name + " is defined in another way");
   }
   return problems;
 }

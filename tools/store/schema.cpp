@@ -10,13 +10,15 @@ namespace {
 
 std::string Tables(std::initializer_list<const char*> names) {
   std::string sql;
-  for (const char* name : names) {
-    sql += fmt::format("CREATE TABLE {}(id INTEGER PRIMARY KEY, body BLOB NOT NULL, crc INTEGER NOT NULL);", name);
-  }
+  for (const char* name : names) sql += TableDefinition(name) + ";";
   return sql;
 }
 
 }  // namespace
+
+std::string TableDefinition(const std::string& name) {
+  return fmt::format("CREATE TABLE {}(id INTEGER PRIMARY KEY, body BLOB NOT NULL, crc INTEGER NOT NULL)", name);
+}
 
 std::string UpgradeFrom(std::int64_t version) {
   std::string sql;

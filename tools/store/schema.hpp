@@ -13,6 +13,7 @@ inline constexpr std::int64_t kSchemaVersion = 2;
 inline constexpr std::int64_t kApplicationId = 0x4D57454C;  // "MWEL", in the header of the file
 
 // The statements that bring a store from `version` (0: an empty file) to kSchemaVersion.
+std::string TableDefinition(const std::string& name);
 std::string UpgradeFrom(std::int64_t version);
 
 }  // namespace mapweld::store

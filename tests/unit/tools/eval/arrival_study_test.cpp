@@ -23,7 +23,7 @@ TEST(ArrivalStudy, EndsWithTheSameGroupsInEveryOrder) {
   EXPECT_EQ(study.outcomes, 1);
   EXPECT_EQ(study.steps[3].fewest_groups, 2);
   EXPECT_EQ(study.steps[3].most_groups, 2);
-  EXPECT_EQ(study.steps[0].mean_groups, 1);
+  EXPECT_DOUBLE_EQ(study.steps[0].mean_groups, 1);
   EXPECT_EQ(study.steps[3].mixed_groups, 0);
 }
 

@@ -73,7 +73,7 @@ TEST(Association, ProposesNothingForDrivesOfDifferentTowns) {
   const std::vector<DrivePlaces> b = PlacesOf(test::CityDescriptors(there).Make());
   int compared = 0;
   for (const DrivePlaces& x : a) {
-    for (const DrivePlaces& y : b) compared += Associate(x, y, {}).compared ? 1 : 0;
+    for (const DrivePlaces& y : b) compared += Associate(x, y, {.sketches = true}).compared ? 1 : 0;
   }
   EXPECT_LT(compared, 144 / 10);
 }
@@ -83,15 +83,14 @@ TEST(Association, OfEmptyDrivesIsNothing) {
   EXPECT_TRUE(Associate(nothing, nothing, {}).matches.empty());
 }
 
-TEST(Association, ComparesAllWhenAskedTo) {
+TEST(Association, ComparesAllUnlessAskedForSketches) {
   test::CityDescriptorsConfig town;
   town.drives = 2;
   town.keyframes = 40;
   town.blocks = 1000;
   const std::vector<DrivePlaces> places = PlacesOf(test::CityDescriptors(town).Make());
-  AssociationConfig exact;
-  exact.exact = true;
-  EXPECT_TRUE(Associate(places[0], places[1], exact).compared);
+  EXPECT_TRUE(Associate(places[0], places[1], {}).compared);
+  EXPECT_FALSE(Associate(places[0], places[1], {.sketches = true}).compared);
 }
 
 }  // namespace
