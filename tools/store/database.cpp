@@ -144,8 +144,8 @@ void Database::Open(Mode mode, const char* vfs) {
                     path_.string(), version, kSchemaVersion));
   }
   if (!empty && version < 1) Fail(SQLITE_CORRUPT);
-  // EXTRA until the file is in WAL mode: a rollback journal whose deletion a power cut took back would undo even what was
-  // committed after it.
+  // EXTRA until the file is in WAL mode: a rollback journal whose deletion a power cut took back would undo even what
+  // was committed after it.
   Execute("PRAGMA synchronous=EXTRA; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;");
   Execute("BEGIN EXCLUSIVE; COMMIT;");  // takes the lock, for good
   if (version < kSchemaVersion) {

@@ -23,7 +23,7 @@ FleetConfig SmallFleet(unsigned seed) {
   FleetConfig config;
   config.poses = 200;
   config.blocks = 3;
-  config.true_loops = 60;
+  config.true_loops = 120;
   config.seed = seed;
   return config;
 }
@@ -54,11 +54,15 @@ class RobustSolve : public ::testing::TestWithParam<std::tuple<int, int, bool>> 
 
 TEST_P(RobustSolve, KeepsTheMapWhereItIsWhateverWrongLoopsAreAdded) {
   const auto [percent, group, known_frames] = GetParam();
-  for (unsigned seed = 1; seed <= 3; ++seed) {
+  int towns = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
     FleetConfig config = SmallFleet(seed);
     config.known_frames = known_frames;
     const FleetGraph clean = MakeFleet(config);
-    const double clean_m = bench::AbsoluteError(SolveRobust(clean.graph, {}).world_T_node, clean.truth);
+    const RobustResult undisturbed = SolveRobust(clean.graph, {});
+    if (Roots(undisturbed) != 1) continue;  // two vehicles share too few places: nothing that wrong loops could spoil
+    ++towns;
+    const double clean_m = bench::AbsoluteError(undisturbed.world_T_node, clean.truth);
     config.wrong_share = percent / 100.0;
     config.wrong_group = group;
     const FleetGraph dirty = MakeFleet(config);
@@ -69,6 +73,7 @@ TEST_P(RobustSolve, KeepsTheMapWhereItIsWhateverWrongLoopsAreAdded) {
     EXPECT_EQ(kept.wrong, 0) << "seed " << seed;
     EXPECT_GE(kept.good, 0.9 * kept.all_good) << "seed " << seed;
   }
+  EXPECT_GE(towns, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Wrong, RobustSolve,

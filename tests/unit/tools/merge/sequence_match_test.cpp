@@ -85,8 +85,8 @@ TEST(Candidates, IncludeTheMeetingsOfTheEndsHoweverUnlike) {
   const std::vector<Match> matches = ProposeMatches(ComputeLikeness(Planted(30, 20, 0, 0, 1, 0, 0)), {});
   for (const int a : {0, 29}) {
     for (const int b : {0, 19}) {
-      EXPECT_TRUE(std::any_of(matches.begin(), matches.end(),
-                              [&](const Match& m) { return m.a == a && m.b == b && m.ends; }));
+      EXPECT_TRUE(
+          std::any_of(matches.begin(), matches.end(), [&](const Match& m) { return m.a == a && m.b == b && m.ends; }));
     }
   }
 }

@@ -71,7 +71,8 @@ TEST(Kill, AtAnyMomentLosesNothingAcknowledged) {
     ASSERT_GE(report.keyframes, acknowledged) << "after kill " << i;
     ASSERT_LE(report.keyframes, acknowledged + 1) << "more than one keyframe was on its way";
     ASSERT_EQ(report.keyframes, report.submaps);
-    acknowledged = report.keyframes;  // the one on its way was written: the next process goes on behind it
+    acknowledged = static_cast<std::int32_t>(
+        report.keyframes);  // the one on its way was written: the next process goes on behind it
   }
   CityStore city(path);
   const auto keyframes = city.Keyframes(1);

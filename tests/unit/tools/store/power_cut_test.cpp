@@ -127,7 +127,8 @@ void RunThroughFailures(CrashDisk* disk, std::vector<Bytes>* acknowledged) {
 
 TEST(FailingDisk, AtAnyOperationKeepsWhatWasThereAndGoesOnWhenItWorksAgain) {
   CrashDisk whole;
-  const Bytes end = RunToTheEnd(whole.vfs());
+  const std::vector<Acknowledged> run = FillCity(&whole);
+  const Bytes& end = run.back().digest;
   int failures = 0;
   for (const int code : {SQLITE_FULL, SQLITE_IOERR_WRITE}) {
     for (const bool for_ever : {false, true}) {
@@ -147,7 +148,11 @@ TEST(FailingDisk, AtAnyOperationKeepsWhatWasThereAndGoesOnWhenItWorksAgain) {
         if (!acknowledged.empty()) {
           CityStore city("city.db", Database::Mode::kExisting, good.vfs());
           ASSERT_TRUE(Fsck(&city).structure.empty()) << n;
-          ASSERT_TRUE(SmallCity::Digest(&city) == acknowledged.back()) << "operation " << n << " failed with " << code;
+          // A step whose commit was written but could not be synced was refused, and may be there all the same.
+          const Bytes digest = SmallCity::Digest(&city);
+          ASSERT_TRUE(digest == acknowledged.back() ||
+                      (acknowledged.size() < run.size() && digest == run[acknowledged.size()].digest))
+              << "operation " << n << " failed with " << code;
         }
         ASSERT_TRUE(RunToTheEnd(good.vfs()) == end) << n;
       }
