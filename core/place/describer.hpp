@@ -22,12 +22,12 @@ namespace mapweld::place {
 class Describer {
  public:
   enum class Method {
-    kTrained,   // weights of the compiled model
-    kHandmade,  // without training: for sensors the model has not seen
+    kHandmade,  // without training
+    kTrained,   // weights of the compiled model; docs/descriptor.md says where it is better and where not yet
   };
   static constexpr std::size_t kMinPoints = 200;
 
-  explicit Describer(Method method = Method::kTrained);
+  explicit Describer(Method method = Method::kHandmade);
 
   // kBadInput, with *description untouched: fewer than kMinPoints points within reach, points that are not finite or
   // beyond 1 km, or points that all lie in one plane or line. A description that looks valid is never made up.
