@@ -149,7 +149,7 @@ TEST(PlaceDescriber, GivesTheSameBytesForEveryOrderOfThePoints) {
 TEST(PlaceDescriber, RemembersNothingFromTheSubmapBefore) {
   const auto first = LookAt(MakeTown(8), {});
   const auto second = LookAt(MakeTown(9), {});
-  const auto describer = std::make_unique<Describer>();
+  const auto describer = std::make_unique<Describer>(Describer::Method::kTrained);
   PlaceDescription used;
   ASSERT_EQ(describer->Describe(*first, &used), Status::kOk);
   ASSERT_EQ(describer->Describe(*second, &used), Status::kOk);
