@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -168,7 +169,13 @@ class AgentOnABus : public testing::Test {
       test->heard_ = messages::Decode(payload, &test->health_) == Status::kOk;
     };
     pollfd waiting{.fd = lcm_->fd(), .events = POLLIN, .revents = 0};
-    return ::poll(&waiting, 1, wait_ms) > 0 && lcm_->Receive({take, this}, 1).ok() && heard_;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait_ms);
+    while (!heard_) {  // what the test itself published comes back, too
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+      if (::poll(&waiting, 1, std::max(0, static_cast<int>(left.count()))) <= 0) return false;
+      if (!lcm_->Receive({take, this}, 1).ok()) return false;
+    }
+    return true;
   }
 
   bool heard_ = false;
