@@ -151,7 +151,7 @@ TEST_P(Faults, AStampThatJumpsDoesNotEndTheDrive) {
   ASSERT_EQ(jumps, 3);
   const auto& last = record.poses.back().odometry;
   EXPECT_GT(static_cast<double>(last.t.ns) * 1e-9, 14);
-  EXPECT_LT((last.odom_T_body.t - street_->TruthAt(last.t).t).norm(), 0.02 * agent_->path_m());
+  EXPECT_LT((last.odom_T_body.t - street_->TruthAt(last.t).t).norm(), 0.01 * agent_->path_m());
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Faults, testing::Values(5U, 6U, 7U));
