@@ -232,7 +232,8 @@ void Lio::UpdateFromScan(LioUpdate* update) {
     update->inliers = match.inliers;
     if (match.inliers < config_.min_inliers) return;
     update->residual_rms_m = std::sqrt(match.residual_sq_sum / match.inliers);
-    update->degeneracy = RemoveOpenDirections(config_.degeneracy, &match.information, &match.gradient);
+    update->degeneracy =
+        RemoveOpenDirections(config_.degeneracy, match.normal_noise, &match.information, &match.gradient);
 
     information = prior_information;
     information.topLeftCorner<6, 6>() += match.information;

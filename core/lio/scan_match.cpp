@@ -50,6 +50,10 @@ ScanMatch MatchScan(const scan::FeaturePoints& features, const FeaturePlanes& pl
     const double weight = huber / (variance * config.correlation);
     match.information.noalias() += (weight * row) * row.transpose();
     match.gradient.noalias() += (weight * residual) * row;
+    const double leaning = weight * config.correlation * static_cast<double>(plane.tilt_variance);
+    const geom::Vec3d p = feature.p.cast<double>();
+    match.normal_noise.position += leaning;
+    match.normal_noise.rotation += leaning * (p.squaredNorm() * geom::Mat3d::Identity() - p * p.transpose());
   }
   return match;
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/fixed_vector.hpp"
 #include "core/geom/pose3.hpp"
+#include "core/lio/degeneracy.hpp"
 #include "core/lio/voxel_map.hpp"
 #include "core/scan/voxel_downsample.hpp"
 
@@ -22,6 +23,7 @@ struct ScanMatchConfig {
 struct ScanMatch {
   geom::Mat6d information = geom::Mat6d::Zero();
   geom::Vec6d gradient = geom::Vec6d::Zero();
+  NormalNoise normal_noise;
   int matched = 0;
   int inliers = 0;
   double residual_sq_sum = 0;  // m^2 over the inliers
@@ -42,7 +44,7 @@ class FeaturePlanes {
   FixedVector<Plane, kCap.scan_features> planes_;
 };
 
-// One pass over the features, about 60 flops each. gate_m widens the gate in the first iterations. Residual:
+// One pass over the features, about 80 flops each. gate_m widens the gate in the first iterations. Residual:
 // n . (odom_T_body p - mean), weight Huber / (variance * correlation).
 ScanMatch MatchScan(const scan::FeaturePoints& features, const FeaturePlanes& planes, const geom::Pose3& odom_T_body,
                     double gate_m, const ScanMatchConfig& config);

@@ -87,6 +87,7 @@ void VoxelMap::FitPlane(const Cell& cell, std::uint32_t count, Voxel* voxel) con
     voxel->normal[static_cast<std::size_t>(i)] = normal(i);
   }
   voxel->variance = static_cast<float>(widths(0) * widths(0));
+  voxel->tilt_variance = static_cast<float>(widths(0) * widths(0) / (n * widths(1) * widths(1)));
 }
 
 bool VoxelMap::FindPlane(const Eigen::Vector3f& p_odom, Plane* plane) {
@@ -115,7 +116,8 @@ bool VoxelMap::FindPlane(const Eigen::Vector3f& p_odom, Plane* plane) {
     if (distance >= best) continue;
     best = distance;
     found = true;
-    *plane = {mean, Eigen::Vector3f(voxel.normal[0], voxel.normal[1], voxel.normal[2]), voxel.variance};
+    *plane = {mean, Eigen::Vector3f(voxel.normal[0], voxel.normal[1], voxel.normal[2]), voxel.variance,
+              voxel.tilt_variance};
   }
   return found;
 }

@@ -22,9 +22,10 @@ struct VoxelMapConfig {
 };
 
 struct Plane {
-  Eigen::Vector3f mean;    // m, odom frame
-  Eigen::Vector3f normal;  // unit
-  float variance = 0;      // of the points across the plane, m^2
+  Eigen::Vector3f mean;     // m, odom frame
+  Eigen::Vector3f normal;   // unit
+  float variance = 0;       // of the points across the plane, m^2
+  float tilt_variance = 0;  // of the normal, rad^2, at most, if the points' errors were independent
 };
 
 // A set-associative hash table of kCap.lio_voxels slots, 8 to a bucket; when a bucket is full the voxel touched in the
@@ -58,6 +59,7 @@ class VoxelMap {
     std::array<float, 3> mean{};  // of the fitted plane, odom frame
     std::array<float, 3> normal{};
     float variance = 0;
+    float tilt_variance = 0;
     std::uint32_t fitted_count = 0;  // points when the plane was last fitted; 0 = never
     bool flat = false;
     std::array<float, 3> sum{};     // of offsets from the cell's centre, m
