@@ -42,7 +42,7 @@ void StreetDrive::BuildAround(float x) {
   };
   add({x - 200, -200, -1.9F}, {x + 200, 200, -1.85F});  // ground
   if (config_.surroundings == Surroundings::kOpenField) return;
-  if (config_.surroundings != Surroundings::kStreet) {
+  if (config_.surroundings == Surroundings::kCorridor || config_.surroundings == Surroundings::kTunnel) {
     add({x - 200, 6, -1.9F}, {x + 200, 7, 8});
     add({x - 200, -7, -1.9F}, {x + 200, -6, 8});
     if (config_.surroundings == Surroundings::kTunnel) add({x - 200, -7, 4}, {x + 200, 7, 5});
@@ -53,6 +53,10 @@ void StreetDrive::BuildAround(float x) {
       const std::uint64_t h = HashKey(static_cast<std::uint64_t>(i + 100) * 2 + (side > 0 ? 1 : 0));
       const float depth = 8.0F + static_cast<float>(h % 5);
       const float begin = static_cast<float>(i) * kBlockM + static_cast<float>((h >> 8U) % 4);
+      if (config_.surroundings == Surroundings::kCountryRoad) {
+        add({begin, side * depth - 0.5F, -1.9F}, {begin + 1, side * depth + 0.5F, -0.4F});
+        continue;
+      }
       const float height = 4.0F + static_cast<float>((h >> 16U) % 8);
       const float near = side * depth;
       const float far = side * (depth + 9);

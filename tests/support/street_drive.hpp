@@ -11,10 +11,11 @@
 namespace mapweld::test {
 
 enum class Surroundings {
-  kStreet,     // houses and poles
-  kCorridor,   // endless smooth walls: nothing fixes the position along them
-  kTunnel,     // the same with a ceiling
-  kOpenField,  // nothing but the ground: nothing fixes position in the plane and heading
+  kStreet,       // houses and poles
+  kCorridor,     // endless smooth walls: nothing fixes the position along them
+  kTunnel,       // the same with a ceiling
+  kCountryRoad,  // a block of a metre every 14 m on either side: little fixes the position
+  kOpenField,    // nothing but the ground: nothing fixes position in the plane and heading
 };
 
 struct StreetDriveConfig {
