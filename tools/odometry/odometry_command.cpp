@@ -14,6 +14,7 @@
 
 #include "tools/io/atomic_file.hpp"
 #include "tools/odometry/drive_player.hpp"
+#include "tools/odometry/odometry_map.hpp"
 #include "tools/odometry/odometry_report.hpp"
 #include "tools/odometry/odometry_run.hpp"
 #include "tools/odometry/scan_export.hpp"
@@ -30,6 +31,7 @@ struct Arguments {
   fs::path against;
   fs::path out;
   fs::path json;
+  fs::path map;
   fs::path scans;
   std::vector<std::string> faults;
   Sweep sweep = Sweep::kNone;
@@ -47,13 +49,17 @@ std::vector<io::StampedPose> TruthOf(const fs::path& drive) {
   return fs::exists(drive / "truth.tum") ? io::ReadTum(drive / "truth.tum") : std::vector<io::StampedPose>{};
 }
 
+void WriteFile(const fs::path& path, const std::string& text) {
+  io::AtomicFile file(path);
+  file.Write(text);
+  file.Commit();
+}
+
 void Finish(const Arguments& arguments, const OdometryRun& run, const std::vector<io::StampedPose>& truth) {
   fmt::print("{}", Report(run, truth));
   if (!arguments.out.empty()) io::WriteTum(arguments.out, Trajectory(run));
-  if (arguments.json.empty()) return;
-  io::AtomicFile file(arguments.json);
-  file.Write(ReportJson(run, truth));
-  file.Commit();
+  if (!arguments.json.empty()) WriteFile(arguments.json, ReportJson(run, truth));
+  if (!arguments.map.empty()) WriteFile(arguments.map, MapPng(run));
 }
 
 void ExportScans(const Arguments& arguments, const std::vector<Fault>& faults, const geom::Pose3& body_T_lidar) {
@@ -113,6 +119,7 @@ void AddOdometryCommand(CLI::App& app) {
   command->add_flag("--keep-moving", arguments->keep_moving, "Do not vote on what moved (not for --against)");
   command->add_flag("--indoor", arguments->indoor, "Submaps of 20 m instead of 50 m");
   command->add_option("--json", arguments->json, "Write the figures and the time of every scan here");
+  command->add_option("--map", arguments->map, "Draw the drive's submaps where the odometry puts them (PNG)");
   command->add_option("--export-scans", arguments->scans,
                       "Only write the drive's scans, undistorted by the truth, as a KITTI folder for other programs");
   const std::map<std::string, Sweep> sweeps{
