@@ -29,6 +29,9 @@ set(MAPWELD_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conve
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # False alarm of GCC 12 on std::string at -O3 (GCC bug 105651).
   list(APPEND MAPWELD_WARNINGS -Wno-restrict)
+  if(MAPWELD_SANITIZE)
+    list(APPEND MAPWELD_WARNINGS -Wno-sign-conversion)  # GCC finds it in what its own instrumentation writes
+  endif()
 endif()
 if(MAPWELD_WERROR)
   list(APPEND MAPWELD_WARNINGS -Werror)
