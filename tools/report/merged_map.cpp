@@ -12,6 +12,9 @@
 namespace mapweld::report {
 namespace {
 
+// A submap reaches 50 m, so that every other keyframe shows all that there is to see.
+constexpr double kSpacing_m = 9.9;
+
 // 21 bits per axis, z slowest, so that keys sort by position.
 constexpr std::int64_t kHalfRange = 1 << 20;
 
@@ -22,7 +25,8 @@ struct Voxel {
   int drive = 0;
 };
 
-// Open addressing; doubles when three quarters are taken.
+// Open addressing; doubles when three quarters are taken. The 64 voxels of a block of 4 x 4 x 4 lie together: the
+// points of a submap come block by block, and a city's table is far larger than any cache.
 class VoxelTable {
  public:
   VoxelTable() : voxels_(std::size_t{1} << 16U) {}
@@ -44,9 +48,11 @@ class VoxelTable {
   }
 
  private:
+  static constexpr std::uint64_t kInBlock = 3U | (std::uint64_t{3} << 21U) | (std::uint64_t{3} << 42U);
+  static std::uint64_t Local(std::uint64_t key) { return (key & 3U) | ((key >> 19U) & 12U) | ((key >> 38U) & 48U); }
   [[nodiscard]] std::size_t Find(std::uint64_t key) const {
     const std::size_t mask = voxels_.size() - 1;
-    std::size_t slot = HashKey(key) & mask;
+    std::size_t slot = (HashKey(key & ~kInBlock) + Local(key)) & mask;
     while (voxels_[slot].count != 0 && voxels_[slot].key != key) slot = (slot + 1) & mask;
     return slot;
   }
@@ -99,9 +105,13 @@ std::vector<MapPoint> BuildGroupMap(const std::vector<merge::Drive>& drives, con
   for (const int drive : result.groups.at(static_cast<std::size_t>(group))) {
     const auto d = static_cast<std::size_t>(drive);
     const std::vector<merge::Keyframe>& keyframes = drives.at(d).keyframes;
+    double used_at_m = -kSpacing_m;
     for (std::size_t k = 0; k < keyframes.size(); ++k) {
+      const bool is_last = k + 1 == keyframes.size();
+      if (!is_last && keyframes[k].path_m - used_at_m < kSpacing_m) continue;
       const std::shared_ptr<const merge::SubmapCloud> cloud = submaps->Find({drive, static_cast<int>(k)});
       if (cloud == nullptr) continue;
+      used_at_m = keyframes[k].path_m;
       const geom::Pose3 merged_T_level = MergedTLevel(result.merged_T_body.at(d).at(k), keyframes[k].odom_T_body);
       for (const Eigen::Vector3f& p_level : cloud->points) {
         AddPoint(merged_T_level * p_level.cast<double>(), voxel_m, drive, &table);

@@ -20,9 +20,9 @@ struct MapPoint {
 // the odometry are already taken out of them.
 geom::Pose3 MergedTLevel(const geom::Pose3& merged_T_body, const geom::Pose3& odom_T_body);
 
-// Sorted by voxel, the same bytes for the same input. Keyframes whose submap is missing are left out. One hash look-up
-// per submap point; 32 bytes per voxel of a table that is between 3/8 and 3/4 full. Points beyond 262 km at 0.25 m are
-// dropped.
+// Sorted by voxel, the same bytes for the same input. Of each drive the submaps about 10 m apart and the last one are
+// used; keyframes whose submap is missing are passed over. One hash look-up per submap point; 32 bytes per voxel of a
+// table that is between 3/8 and 3/4 full. Points beyond 262 km at 0.25 m are dropped.
 std::vector<MapPoint> BuildGroupMap(const std::vector<merge::Drive>& drives, const merge::MergeResult& result,
                                     int group, merge::SubmapSource* submaps, double voxel_m = 0.4);
 
