@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The networks of AutoMerge (Yin et al., T-RO 2023) in floating point, for comparison with the trained descriptor:
 
-    paper.py --branch point|sphere|fused --sets A.npz ... --validation B.npz ... -o DIR     trains; DIR/BRANCH.pt
-    paper.py --describe DIR/BRANCH.pt SET.npz OUT.csv                                        a table for mapweld eval places
+    paper.py --branch point|sphere|fused --sets A.npz ... --validation B.npz ... -o DIR    trains; DIR/BRANCH.pt
+    paper.py --describe SET.npz OUT MODEL.pt [MODEL.pt]    OUT.DRIVE.csv, tables for mapweld eval places; two models side by side
 
 Sets are those of inputs.py --points. Point branch: PointNet on 4096 points of 80 x 80 m, NetVLAD, fully connected, 512
 numbers. Sphere branch: four zonal spherical convolutions on a 64 x 64 panorama, NetVLAD, fully connected, 512 numbers.
-Fused: both side by side, self attention (eq. 1) on each, cross attention (eqs. 2-5) by gates. Loss: lazy quadruplet (eq. 6).
+Fused: both side by side, self attention (eq. 1) on each, cross attention (eqs. 2-5) by gates. Loss: the lazy quadruplet
+(eq. 6), which fell to one code for all places in our hands, or the ranking loss of train.py.
 """
 import argparse
 import math
@@ -21,11 +22,13 @@ from scipy.special import lpmv
 from torch import nn
 
 from places import draw_batch, open_places, recall
+from train import loss_of
 
 BRANCH_OUTPUTS = 512
+DESCRIPTOR, SIGNATURE = 1024, 192  # columns of a table
 MARGINS = 0.5, 0.2
-INPUTS = {"point": ("points",), "sphere": ("panorama",), "concatenation": ("points", "panorama"),
-          "fused": ("points", "panorama")}
+TEMPERATURE = 0.07
+INPUTS = {"point": ("points",), "sphere": ("panorama",), "fused": ("points", "panorama")}
 
 
 class NetVlad(nn.Module):
@@ -199,7 +202,10 @@ def train(a):
             group["lr"] = a.rate * min(1, step / 50) * (0.5 * (1 + math.cos(math.pi * min(done, 1))) + 0.01)
         views, same, other = draw_batch(sets, rng, a.neighbourhoods, 8)
         inputs = look(a.branch, a.device, *(np.stack([getattr(s, k)[i, v] for s, i, v in views]) for k in ("points", "panorama")))
-        loss = quadruplet_loss(model(inputs), torch.from_numpy(same).to(a.device), torch.from_numpy(other).to(a.device))
+        same, other = torch.from_numpy(same).to(a.device), torch.from_numpy(other).to(a.device)
+        code = model(inputs)
+        loss = (quadruplet_loss(code, same, other) if a.loss == "quadruplet"
+                else loss_of(code @ code.t() / TEMPERATURE, same, other))
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
@@ -218,20 +224,29 @@ def train(a):
             break
 
 
-def write_table(a):
-    """The rows of mapweld describe: scan, position, scale, int8 numbers; no orientation signature."""
-    model_file, set_file, out = a.describe
-    saved = torch.load(model_file, map_location="cpu")
-    model = PaperNetwork(saved["branch"])
-    model.load_state_dict(saved["state"])
+def write_tables(set_file, out, *model_files):
+    """The columns of mapweld describe, without orientation."""
     places = load_inputs(open_places(set_file))
-    code = describe(model, places, 0, "cpu")
-    np.savez(out, code=code, drive=places.drive, position=places.position, heading=places.heading)
+    codes = []
+    for file in model_files:
+        saved = torch.load(file, map_location="cpu")
+        model = PaperNetwork(saved["branch"])
+        model.load_state_dict(saved["state"])
+        codes.append(describe(model, places, 0, "cpu"))
+    code = np.concatenate(codes, 1) / math.sqrt(len(codes))
+    scale = np.abs(code).max(1) / 127
+    numbers = np.zeros((len(code), DESCRIPTOR + SIGNATURE), int)
+    numbers[:, :code.shape[1]] = np.rint(code / scale[:, None])
+    header = ["scan,x,y,z,scale"] + [f"d{i}" for i in range(DESCRIPTOR)] + [f"o{i}" for i in range(SIGNATURE)]
+    for drive in np.unique(places.drive):
+        rows = [",".join([str(i), *(f"{v:.4f}" for v in places.position[i]), f"{scale[i]:.9g}", *map(str, numbers[i])])
+                for i in np.flatnonzero(places.drive == drive)]
+        pathlib.Path(f"{out}.{drive}.csv").write_text("\n".join([",".join(header), *rows, ""]))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--describe", nargs=3, metavar=("MODEL", "SET", "OUT"))
+    parser.add_argument("--describe", nargs="+", metavar="SET OUT MODEL")
     parser.add_argument("--branch", choices=INPUTS, default="fused")
     parser.add_argument("--sets", nargs="+", default=[])
     parser.add_argument("--validation", nargs="+", default=[])
@@ -240,12 +255,13 @@ def main():
     parser.add_argument("--steps", type=int, default=3000)
     parser.add_argument("--minutes", type=float, default=1e9)
     parser.add_argument("--neighbourhoods", type=int, default=8)
+    parser.add_argument("--loss", choices=("ranking", "quadruplet"), default="ranking")
     parser.add_argument("--rate", type=float, default=1e-3)
     parser.add_argument("--every", type=int, default=200)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--device", default="cpu")
     a = parser.parse_args()
-    write_table(a) if a.describe else train(a)
+    write_tables(*a.describe) if a.describe else train(a)
 
 
 if __name__ == "__main__":
