@@ -24,17 +24,50 @@ def _vehicle(rng):
     return _turn(surface, rng.uniform(0, np.pi)) + np.append(rng.uniform(-25, 25, 2), -0.5)
 
 
+def _fewer_beams(points, rng):
+    """Keeps bands of elevation, as a sensor with beams 1 to 4 degrees apart would."""
+    apart = np.deg2rad(rng.uniform(1, 4))
+    elevation = np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1])) / apart + rng.random()
+    return np.abs(elevation - np.rint(elevation)) < rng.uniform(0.15, 0.4)
+
+
+def _thinned_crowns(points, rng):
+    """Leaves come and go: above some height most points of some 4 m blocks are lost."""
+    block = np.floor(points / 4).astype(int)
+    lost = ((block[:, 0] * 73856093) ^ (block[:, 1] * 19349663) ^ int(rng.integers(1 << 30))) % 1000 < 1000 * rng.uniform(0.2, 0.7)
+    above = points[:, 2] > np.percentile(points[:, 2], 5) + rng.uniform(1.5, 4)
+    return ~(above & lost & (rng.random(len(points)) < 0.8))
+
+
+def _columns(points, rng):
+    """As if made from a bird's-eye density image: 0.4 m cells within 25 to 30 m, as much higher as there was more in them."""
+    p = points[_without_ground(points, 0.3) & (np.hypot(points[:, 0], points[:, 1]) < rng.uniform(25, 30))]
+    cells, count = np.unique(np.floor(p[:, :2] / 0.4).astype(int), axis=0, return_counts=True)
+    height = np.rint(1 + 0.3 * np.minimum(10, 3 * np.log2(1 + count))).astype(int)
+    which = np.repeat(np.arange(len(cells)), height)
+    level = np.arange(len(which)) - np.repeat(np.cumsum(height) - height, height)
+    corner = np.column_stack([cells[which] + 0.5, level - 3]) * 0.4
+    return corner + rng.uniform(-0.1, 0.1, corner.shape)
+
+
 def augment(points, rng):
-    """[n, 3] float32 to [m, 3]: any heading, about a metre aside, shorter range, no ground, few or short beams, up to half
-    of the points lost, a blind sector, things gone and vehicles that were not there."""
-    p = _turn(points, rng.uniform(0, 2 * np.pi)) + np.append(rng.normal(0, 1, 2), rng.normal(0, 0.1)).astype(np.float32)
-    keep = rng.random(len(p)) > rng.uniform(0, 0.5)
+    """[n, 3] float32 to [m, 3]: any heading, up to 4 m aside, shorter range, no ground, few or short beams, points lost, a
+    blind sector, things and leaves gone, vehicles that were not there, heights made up."""
+    aside = np.append(rng.normal(0, rng.choice([0.7, 1.7]), 2).clip(-4, 4), rng.normal(0, 0.1))
+    p = _turn(points, rng.uniform(0, 2 * np.pi)) + aside.astype(np.float32)
+    if rng.random() < 0.15 and len(points) > 1000:
+        p = _columns(p, rng)
+    keep = rng.random(len(p)) > rng.choice([rng.uniform(0, 0.5), rng.uniform(0.5, 0.8)], p=[0.8, 0.2])
     if rng.random() < 0.4:
         keep &= np.hypot(p[:, 0], p[:, 1]) < rng.uniform(24, 45)
     if rng.random() < 0.35:
         keep &= _without_ground(p, rng.uniform(0.25, 0.5))
     if rng.random() < 0.35:
         keep &= p[:, 2] < np.percentile(p[:, 2], 5) + rng.uniform(1.5, 8)
+    if rng.random() < 0.2:
+        keep &= _fewer_beams(p, rng)
+    if rng.random() < 0.3:
+        keep &= _thinned_crowns(p, rng)
     if rng.random() < 0.3:
         off = (np.arctan2(p[:, 1], p[:, 0]) - rng.uniform(-np.pi, np.pi) + np.pi) % (2 * np.pi) - np.pi
         keep &= np.abs(off) > rng.uniform(0.15, 0.75)

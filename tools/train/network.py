@@ -7,13 +7,12 @@ import torch
 import torch.nn.functional as F
 from torch import nn
 
-NETWORK_OUTPUTS, SPECTRUM_OUTPUTS = 256, 768
-MAP_CHANNELS, MAP_RINGS, MAP_ORDERS = 16, 16, 12
+DESCRIPTOR, NETWORK_OUTPUTS, CHANNELS = 1024, 256, (16, 32, 16)
+MAP_RINGS, MAP_ORDERS = 16, 12
 IMAGE_RINGS, IMAGE_ORDERS = 32, 18
 RELATION_ORDERS, RING_LAG = 8, 4
 IMAGE_POWER = IMAGE_RINGS * IMAGE_ORDERS
 IMAGE_FEATURES = IMAGE_POWER + 2 * (IMAGE_RINGS - RING_LAG) * RELATION_ORDERS
-FEATURES = MAP_CHANNELS * MAP_RINGS * (MAP_ORDERS + RELATION_ORDERS) + IMAGE_FEATURES
 
 
 class Conv(nn.Module):
@@ -75,14 +74,18 @@ class SpectrumCode(nn.Module):
 
 
 class PlanNetwork(nn.Module):
-    def __init__(self, dropout=0.4, band_dropout=0.25):
+    """channels: of the three maps."""
+
+    def __init__(self, channels=CHANNELS, outputs=NETWORK_OUTPUTS, dropout=0.4, band_dropout=0.25):
         super().__init__()
         self.band_dropout = band_dropout
         self.input_norm = nn.BatchNorm2d(3)
-        self.first, self.second, self.third = Conv(3, 16, ring_stride=2), Conv(16, 32), Conv(32, MAP_CHANNELS)
-        self.feature_norm = nn.BatchNorm1d(FEATURES)
+        self.first, self.second, self.third = (
+            Conv(3, channels[0], ring_stride=2), Conv(channels[0], channels[1]), Conv(channels[1], channels[2]))
+        features = channels[2] * MAP_RINGS * (MAP_ORDERS + RELATION_ORDERS) + IMAGE_FEATURES
+        self.feature_norm = nn.BatchNorm1d(features)
         self.dropout = nn.Dropout(dropout)
-        self.last = nn.Linear(FEATURES, NETWORK_OUTPUTS, bias=False)
+        self.last = nn.Linear(features, outputs, bias=False)
 
     def map_features(self, feature_map):
         re, im = orders(feature_map, MAP_ORDERS)
@@ -93,7 +96,7 @@ class PlanNetwork(nn.Module):
     def without_bands(self, image):
         """Some sensors see no heights: their upper bands are empty, or the middle one is as full as the first."""
         image = image.clone()
-        draw = torch.rand(len(image))
+        draw = torch.rand(len(image), device=image.device)
         image[draw < self.band_dropout, 1:] = 0
         same = draw < self.band_dropout / 2
         image[same, 1] = image[same, 0]
@@ -109,16 +112,27 @@ class PlanNetwork(nn.Module):
 
 
 class TrainedCode(nn.Module):
-    """image float [n, 3, 32, 64] in units of the first band's root mean square -> ([n, 1024], [n, 256]) of unit length:
-    the spectrum with all its features, and the network's code."""
+    """image float [n, 3, 32, 64] in units of the first band's root mean square -> spectrum [n, 1024] with all its features
+    and the network's code [n, outputs], both of unit length."""
 
-    def __init__(self):
+    def __init__(self, channels=CHANNELS, outputs=NETWORK_OUTPUTS):
         super().__init__()
-        self.spectrum, self.network = SpectrumCode(), PlanNetwork()
+        self.channels, self.outputs = tuple(channels), outputs
+        self.spectrum, self.network = SpectrumCode(), PlanNetwork(channels, outputs)
 
     def forward(self, image):
         of_image = image_features(image)
         return self.spectrum(of_image), self.network(image, of_image)
+
+    def save(self, path):
+        torch.save({"channels": self.channels, "outputs": self.outputs, "state": self.state_dict()}, path)
+
+    @staticmethod
+    def load(path):
+        saved = torch.load(path, map_location="cpu")
+        model = TrainedCode(saved["channels"], saved["outputs"])
+        model.load_state_dict(saved["state"])
+        return model.eval()
 
 
 def fuse(spectrum, network, share):

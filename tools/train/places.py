@@ -12,9 +12,10 @@ class Places:
     """A file of inputs.py. part: None for all, "train" or "test" for the black or white tiles of a 150 m board."""
 
     def __init__(self, path, part=None):
-        data = np.load(path)
+        self.data = np.load(path)
         self.name = f"{path}:{part}" if part else str(path)
-        self.image, self.drive, self.position, self.heading = (data[k] for k in ("image", "drive", "position", "heading"))
+        self.image, self.drive, self.position, self.heading = (
+            self.data[k] for k in ("image", "drive", "position", "heading"))
         tile = np.floor(self.position[:, :2] / TILE_M).astype(int).sum(1) % 2
         self.chosen = np.ones(len(tile), bool) if part is None else tile == (part == "test")
         self.index = np.flatnonzero(self.chosen)
@@ -22,6 +23,7 @@ class Places:
         self.same = dict(zip(self.index, (self.index[n] for n in self.tree.query_ball_point(self.position[self.index], 7))))
 
     def images(self, index, variant):
+        """float32 [..., 3, 32, 64] in units of the first band's root mean square."""
         return self.image[index, variant].astype(np.float32) / 64
 
     def _partner(self, i, rng):
@@ -61,20 +63,17 @@ def open_places(text):
 
 
 def draw_batch(sets, rng, neighbourhoods, places):
-    """images [n, 3, 32, 64], same [n, n] and other [n, n]: which pairs are of one place, which of two."""
+    """([(set, place, view)], same [n, n], other [n, n]): which pairs of the views are of one place, which of two."""
     weight = np.sqrt([len(s.index) for s in sets])
-    images, position, origin = [], [], []
+    views = []
     for _ in range(neighbourhoods):
         which = rng.choice(len(sets), p=weight / weight.sum())
-        for pair in sets[which].neighbourhood(rng, places):
-            for i, v in pair:
-                images.append(sets[which].images(i, v))
-                position.append(sets[which].position[i])
-                origin.append(which)
-    position, origin = np.array(position), np.array(origin)
+        views += [(sets[which], *view) for pair in sets[which].neighbourhood(rng, places) for view in pair]
+    position = np.array([s.position[i] for s, i, _ in views])
+    origin = np.array([id(s) for s, _, _ in views])
     apart = np.linalg.norm(position[:, None] - position[None], axis=2)
     apart[origin[:, None] != origin[None]] = np.inf
-    return np.stack(images), (apart < SAME_M) & ~np.eye(len(apart), dtype=bool), apart > OTHER_M
+    return views, (apart < SAME_M) & ~np.eye(len(apart), dtype=bool), apart > OTHER_M
 
 
 def recall(places, query, database, gap_m=60):

@@ -12,33 +12,11 @@ import torch
 import torch.nn.functional as F
 
 from inputs import plan_image
+from int8_rules import fixed_point, pad_outputs, quantize_weights, requantize
 from model_blob import pack_weights, write_model
-from network import SPECTRUM_OUTPUTS, TrainedCode, fuse, image_features
+from network import DESCRIPTOR, TrainedCode, fuse, image_features
 from places import open_places, recall
 from submaps import read_submaps
-
-
-def padded(values, to, fill, dtype):
-    out = np.full(-(-len(values) // to) * to, fill, dtype)
-    out[: len(values)] = values
-    return out
-
-
-def fixed_point(factor):
-    """factor = multiplier / 2^shift with multiplier in 2^30 .. 2^31 - 1: docs/model_format.md."""
-    mantissa, exponent = np.frexp(factor)  # factor = mantissa * 2^exponent, mantissa in 0.5 .. 1
-    multiplier = np.rint(mantissa * 2.0**31)
-    carry = multiplier == 2.0**31
-    multiplier, shift = np.where(carry, 2.0**30, multiplier), 31 - exponent - carry
-    if shift.min() < 32 or shift.max() > 62:
-        raise ValueError("a layer's output step is out of reach of its inputs'; calibrate with other places")
-    return multiplier.astype(np.int32), shift.astype(np.int32)
-
-
-def quantized_rows(weights):
-    """[N][K] float -> int8 rows and the step of each."""
-    step = np.maximum(np.abs(weights).max(1), 1e-12) / 127
-    return np.rint(weights / step[:, None]).astype(np.int64), step
 
 
 class IntegerConv:
@@ -49,9 +27,9 @@ class IntegerConv:
         weights = layer.conv.weight.detach().double().numpy() * scale[:, None, None, None]
         self.shape = weights.shape
         rows = weights.transpose(0, 2, 3, 1).reshape(len(weights), -1)  # K counts ky, kx, c
-        self.rows, step = quantized_rows(rows)
+        self.rows, step = quantize_weights(rows)
         bias = layer.norm.bias.detach().double().numpy() - layer.norm.running_mean.double().numpy() * scale
-        self.bias = np.rint(bias / (in_step * step)).astype(np.int64)
+        self.bias = np.rint(bias / (in_step * step)).astype(np.int32)
         self.multiplier, self.shift = fixed_point(in_step * step / out_step)
         self.stride = layer.conv.stride
 
@@ -60,14 +38,11 @@ class IntegerConv:
         kernel = torch.from_numpy(self.rows.reshape(n, h, w, c).transpose(0, 3, 1, 2).astype(np.float64).copy())
         x = F.pad(F.pad(torch.from_numpy(x.astype(np.float64)), (1, 1, 0, 0), mode="circular"), (0, 0, 1, 1))
         sums = F.conv2d(x, kernel, stride=self.stride).numpy().astype(np.int64) + self.bias[None, :, None, None]
-        shift = self.shift.astype(np.int64)[None, :, None, None]
-        scaled = (sums * self.multiplier.astype(np.int64)[None, :, None, None] + (1 << (shift - 1))) >> shift
-        return np.clip(scaled, 0, 127)
+        return requantize(sums, *(v[:, None, None] for v in (self.multiplier, self.shift)), 0)
 
     def tensors(self, name):
-        return {f"{name}.weight": pack_weights(self.rows), f"{name}.bias": padded(self.bias, 8, 0, np.int32),
-                f"{name}.multiplier": padded(self.multiplier, 8, 2**30, np.int32),
-                f"{name}.shift": padded(self.shift, 8, 32, np.int32)}
+        return {f"{name}.weight": pack_weights(self.rows), f"{name}.bias": pad_outputs(self.bias),
+                f"{name}.multiplier": pad_outputs(self.multiplier, 2**30), f"{name}.shift": pad_outputs(self.shift, 32)}
 
 
 class IntegerNetwork:
@@ -95,7 +70,7 @@ class IntegerNetwork:
         self.feature_scale = (scale / feature_step).astype(np.float32)
         self.feature_offset = ((norm.bias.detach().double().numpy() - norm.running_mean.double().numpy() * scale)
                                / feature_step).astype(np.float32)
-        self.rows, step = quantized_rows(network.last.weight.detach().double().numpy())
+        self.rows, step = quantize_weights(network.last.weight.detach().double().numpy())
         self.output_scale = (step * feature_step).astype(np.float32)
         self.network = network
 
@@ -120,7 +95,7 @@ class IntegerNetwork:
             out |= conv.tensors(name)
         out |= {"map.scale": np.array([self.map_step]), "feature.scale": self.feature_scale,
                 "feature.offset": self.feature_offset, "last.weight": pack_weights(self.rows),
-                "last.bias": np.zeros(-(-len(self.rows) // 8) * 8, np.int32), "output.scale": self.output_scale}
+                "last.bias": pad_outputs(np.zeros(len(self.rows), np.int32)), "output.scale": self.output_scale}
         return out
 
 
@@ -135,7 +110,7 @@ class IntegerCode:
         with torch.no_grad():
             spread = model.spectrum(image_features(x)).std(0).numpy()
         # The features in which places differ most, in the order of the image's features.
-        self.index = np.sort(np.argsort(-spread, kind="stable")[:SPECTRUM_OUTPUTS]).astype(np.int32)
+        self.index = np.sort(np.argsort(-spread, kind="stable")[:DESCRIPTOR - model.outputs]).astype(np.int32)
 
     def __call__(self, pixels):
         with torch.no_grad():
@@ -172,12 +147,11 @@ def main():
     parser.add_argument("--calibrate", nargs="+", required=True, help="the sets of inputs.py that it was trained on")
     parser.add_argument("-o", "--out", required=True)
     parser.add_argument("--name", required=True, help="name and date of the model, for logs")
-    parser.add_argument("--share", type=float, default=0.07, help="of the network in the squared length")
+    parser.add_argument("--share", type=float, default=0.2, help="of the network in the squared length")
     parser.add_argument("--check", nargs="*", default=[], help=".npz sets on which Recall@1 of both is compared")
     parser.add_argument("--golden", nargs=2, metavar=("SET.bin", "FILE"), help="test vectors for the agent's code")
     a = parser.parse_args()
-    model = TrainedCode()
-    model.load_state_dict(torch.load(a.model))
+    model = TrainedCode.load(a.model)
     rng = np.random.default_rng(0)
     sets = [open_places(text) for text in a.calibrate]
     images = np.concatenate([s.images(np.sort(rng.choice(s.index, min(256, len(s.index)), replace=False)), 0)
