@@ -153,7 +153,9 @@ class Merge {
       const auto loops = static_cast<int>(found.loops.size());
       if (loops < verify.min_loops || found.evidence < verify.min_total_evidence) return;
       if (found.contradictions > verify.max_contradiction * (loops + found.contradictions)) return;
-      if (!Agrees(ToLoops(found.loops))) return;
+      double agreement = 0;
+      for (const VerifiedLoop& loop : found.loops) agreement += loop.overlap_ratio;
+      if (agreement < verify.min_mean_overlap * loops) return;
       if (overlap == nullptr) {
         out_.overlaps.push_back({});
         overlap = &out_.overlaps.back();
@@ -168,10 +170,6 @@ class Merge {
     }
     const std::vector<Loop> added = ToLoops(found.loops);
     overlap->loops.insert(overlap->loops.end(), added.begin(), added.end());
-    if (!Agrees(overlap->loops)) {  // a look-alike that passed on few pairs: the many of the refinement tell
-      overlap->accepted = false;
-      overlap->test = "little agreement";
-    }
     std::stable_sort(overlap->loops.begin(), overlap->loops.end(), [](const Loop& x, const Loop& y) {
       return std::pair(x.keyframe_a, x.keyframe_b) < std::pair(y.keyframe_a, y.keyframe_b);
     });
@@ -179,12 +177,6 @@ class Merge {
     std::stable_sort(out_.overlaps.begin(), out_.overlaps.end(), [](const Overlap& x, const Overlap& y) {
       return std::pair(x.drive_a, x.drive_b) < std::pair(y.drive_a, y.drive_b);
     });
-  }
-
-  [[nodiscard]] bool Agrees(const std::vector<Loop>& loops) const {
-    double sum = 0;
-    for (const Loop& loop : loops) sum += loop.overlap_ratio;
-    return sum >= config_.verify.min_mean_overlap * static_cast<double>(loops.size());
   }
 
   void Finish() {

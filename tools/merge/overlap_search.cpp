@@ -182,12 +182,20 @@ bool OdometryAllows(const LoopFinder& finder, const VerifiedLoop& x, const Verif
   return off.t.norm() < 2 * config.max_jump_m + 2 * config.drift * path_m && geom::LogSo3(off.q).norm() < 0.35;
 }
 
+// Where drives only cross, the loops beside the crossing agree less than those at it, but of a true crossing not by much.
+bool LoopsAgree(const VerifyConfig& config, const std::vector<VerifiedLoop>& loops) {
+  double sum = 0;
+  for (const VerifiedLoop& loop : loops) sum += loop.overlap_ratio;
+  return sum >= config.min_mean_overlap * static_cast<double>(loops.size());
+}
+
 void Decide(const VerifyConfig& config, Hypothesis* hypothesis) {
   if (hypothesis->contradictions > config.max_contradiction * hypothesis->near_pairs) {
     hypothesis->test = "contradiction";
   } else if (hypothesis->torn > config.max_torn_share * hypothesis->near_pairs) {
     hypothesis->test = "look-alike";
-  } else if (hypothesis->overlap < config.min_mean_overlap * hypothesis->near_pairs) {
+  } else if (hypothesis->overlap < config.min_mean_overlap * hypothesis->near_pairs ||
+             !LoopsAgree(config, hypothesis->loops)) {
     hypothesis->test = "little agreement";
   } else if (static_cast<int>(hypothesis->loops.size()) < config.min_loops) {
     hypothesis->test = hypothesis->missing > 0 ? "submaps missing" : "too few matches";
