@@ -49,17 +49,11 @@ std::vector<io::StampedPose> TruthOf(const fs::path& drive) {
   return fs::exists(drive / "truth.tum") ? io::ReadTum(drive / "truth.tum") : std::vector<io::StampedPose>{};
 }
 
-void WriteFile(const fs::path& path, const std::string& text) {
-  io::AtomicFile file(path);
-  file.Write(text);
-  file.Commit();
-}
-
 void Finish(const Arguments& arguments, const OdometryRun& run, const std::vector<io::StampedPose>& truth) {
   fmt::print("{}", Report(run, truth));
   if (!arguments.out.empty()) io::WriteTum(arguments.out, Trajectory(run));
-  if (!arguments.json.empty()) WriteFile(arguments.json, ReportJson(run, truth));
-  if (!arguments.map.empty()) WriteFile(arguments.map, MapPng(run));
+  if (!arguments.json.empty()) io::WriteFileAtomically(arguments.json, ReportJson(run, truth));
+  if (!arguments.map.empty()) io::WriteFileAtomically(arguments.map, MapPng(run));
 }
 
 void ExportScans(const Arguments& arguments, const std::vector<Fault>& faults, const geom::Pose3& body_T_lidar) {

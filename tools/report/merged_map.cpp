@@ -48,11 +48,14 @@ class VoxelTable {
   }
 
  private:
+  // The low two bits of each axis say where a voxel lies in its block.
   static constexpr std::uint64_t kInBlock = 3U | (std::uint64_t{3} << 21U) | (std::uint64_t{3} << 42U);
-  static std::uint64_t Local(std::uint64_t key) { return (key & 3U) | ((key >> 19U) & 12U) | ((key >> 38U) & 48U); }
+  static std::uint64_t PlaceInBlock(std::uint64_t key) {
+    return (key & 3U) | ((key >> 19U) & 12U) | ((key >> 38U) & 48U);
+  }
   [[nodiscard]] std::size_t Find(std::uint64_t key) const {
     const std::size_t mask = voxels_.size() - 1;
-    std::size_t slot = (HashKey(key & ~kInBlock) + Local(key)) & mask;
+    std::size_t slot = (HashKey(key & ~kInBlock) + PlaceInBlock(key)) & mask;
     while (voxels_[slot].count != 0 && voxels_[slot].key != key) slot = (slot + 1) & mask;
     return slot;
   }

@@ -14,7 +14,7 @@ import torch.nn.functional as F
 from inputs import plan_image
 from int8_rules import fixed_point, pad_outputs, quantize_weights, requantize
 from model_blob import pack_weights, write_model
-from network import DESCRIPTOR, TrainedCode, fuse, image_features
+from network import DESCRIPTOR, SHARE, TrainedCode, fuse, image_features
 from places import open_places, recall
 from submaps import read_submaps
 
@@ -147,7 +147,7 @@ def main():
     parser.add_argument("--calibrate", nargs="+", required=True, help="the sets of inputs.py that it was trained on")
     parser.add_argument("-o", "--out", required=True)
     parser.add_argument("--name", required=True, help="name and date of the model, for logs")
-    parser.add_argument("--share", type=float, default=0.2, help="of the network in the squared length")
+    parser.add_argument("--share", type=float, default=SHARE, help="of the network in the squared length")
     parser.add_argument("--check", nargs="*", default=[], help=".npz sets on which Recall@1 of both is compared")
     parser.add_argument("--golden", nargs=2, metavar=("SET.bin", "FILE"), help="test vectors for the agent's code")
     a = parser.parse_args()

@@ -15,7 +15,7 @@ import time
 import numpy as np
 import torch
 
-from network import CHANNELS, NETWORK_OUTPUTS, TrainedCode, fuse
+from network import CHANNELS, NETWORK_OUTPUTS, SHARE, TrainedCode, fuse
 from places import draw_batch, open_places, recall
 
 
@@ -57,7 +57,7 @@ def main():
     parser.add_argument("--places", type=int, default=8, help="of a neighbourhood, two views each")
     parser.add_argument("--channels", type=int, nargs=3, default=CHANNELS)
     parser.add_argument("--outputs", type=int, default=NETWORK_OUTPUTS)
-    parser.add_argument("--share", type=float, default=0.2, help="of the network in what is reported as both")
+    parser.add_argument("--share", type=float, default=SHARE, help="of the network in what is reported as both")
     parser.add_argument("--rate", type=float, default=1.5e-3)
     parser.add_argument("--every", type=int, default=200, help="steps between validations")
     parser.add_argument("--seed", type=int, default=0)

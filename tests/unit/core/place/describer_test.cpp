@@ -56,7 +56,7 @@ TEST(PlaceDescriber, GivesTheSameDescriptorForEveryHeading) {
     const float c = std::cos(Degrees(degrees));
     const float s = std::sin(Degrees(degrees));
     for (const submap::SubmapPoint& p : submap->points) Push(turned, c * p.x + s * p.y, c * p.y - s * p.x, p.z);
-    EXPECT_LT(Distance(ahead, Describe(turned)), 0.004F) << degrees << " degrees";
+    EXPECT_LT(Distance(ahead, Describe(turned)), 0.003F) << degrees << " degrees";
   }
 }
 
@@ -187,7 +187,7 @@ TEST(PlaceDescriber, GivesTheVeryBytesItGaveOnTheFirstMachine) {
   };
   EXPECT_EQ(checksum(Describer::Method::kHandmade), 2215372942U);
   EXPECT_EQ(checksum(Describer::Method::kTrained),
-            1818171643U);  // of the compiled model: changes when it is trained anew
+            2989412434U);  // of the compiled model: changes when it is trained anew
 }
 
 class RefusedSubmap : public ::testing::Test {
