@@ -182,7 +182,8 @@ bool OdometryAllows(const LoopFinder& finder, const VerifiedLoop& x, const Verif
   return off.t.norm() < 2 * config.max_jump_m + 2 * config.drift * path_m && geom::LogSo3(off.q).norm() < 0.35;
 }
 
-// Where drives only cross, the loops beside the crossing agree less than those at it, but of a true crossing not by much.
+// Where drives only cross, the loops beside the crossing agree less than those at it, but of a true crossing not by
+// much.
 bool LoopsAgree(const VerifyConfig& config, const std::vector<VerifiedLoop>& loops) {
   double sum = 0;
   for (const VerifiedLoop& loop : loops) sum += loop.overlap_ratio;

@@ -86,6 +86,10 @@ void RunOnDrive(const Arguments& arguments) {
 }
 
 void RunOnClouds(const Arguments& arguments) {
+  if (!arguments.map.empty()) {
+    throw std::runtime_error(
+        "--map draws the submaps of a drive (lidar.pcap, imu.candump); a folder of clouds has none");
+  }
   const io::RecordingFolder folder = io::RecordingFolder::Open(arguments.recording);
   for (const std::string& note : folder.notes()) fmt::print(stderr, "odometry: {}\n", note);
   lio::LioConfig config;
