@@ -72,12 +72,14 @@ LoopTry LoopFinder::Judge(int a, int b, const Registration& registration, double
   } else if (Tilt(registration.a_T_b) > verify.max_tilt_rad) {
     out.test = "tilt";
   } else if (registration.Evidence() < least_evidence) {
+    out.comparable = true;
     out.test = "overlap ratio";
     if (registration.Overlap() >= verify.slide_overlap) {
       out.answer = LoopTry::Answer::kUnclear;
       out.test = "slides along the street";
     }
   } else {
+    out.comparable = true;
     out.answer = LoopTry::Answer::kSame;
   }
   return out;

@@ -28,8 +28,9 @@ struct LoopTry {
   // kUnclear: nothing speaks against it, but it could as well lie a few metres further along the street.
   enum class Answer { kSame, kUnclear, kDifferent, kMissing };
   Answer answer = Answer::kDifferent;
-  const char* test = "";  // that refused it
-  VerifiedLoop loop;      // the pose is set unless kMissing, even when refused
+  const char* test = "";    // that refused it
+  VerifiedLoop loop;        // the pose is set unless kMissing, even when refused
+  bool comparable = false;  // registered, level and with enough in common: the loop's numbers mean something
 };
 
 class LoopFinder {

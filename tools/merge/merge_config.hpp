@@ -55,6 +55,7 @@ struct VerifyConfig {
   double max_contradiction = 0.34;  // share of near keyframe pairs that do not fit
   double min_mean_overlap = 0.58;   // over the near keyframe pairs: clearly more must agree than not
   double max_torn_share = 0.3;      // mean over the near keyframe pairs; see Registration::torn_share
+  double min_above_look_alikes = 0.04;  // overlap ratio above that of the drives' own other places; see LookAlikes
 };
 
 struct WeightConfig {

@@ -11,6 +11,7 @@ namespace {
 using geom::Pose3;
 
 constexpr double kMinLength_m = 5;
+constexpr std::size_t kPlacesCompared = 6;  // of an overlap, with other places of its drives
 
 double Path(const Drive& drive, int keyframe) {
   return drive.keyframes[static_cast<std::size_t>(keyframe)].path_m;
@@ -164,10 +165,11 @@ int Rank(const std::string& test) {
                                     "slides along the street",
                                     "odometry",
                                     "contradiction",
-                                    "look-alike",
+                                    "torn",
                                     "little agreement",
                                     "too little evidence",
                                     "too few matches",
+                                    "look-alike",
                                     "submaps missing"};
   const auto* at = std::find(std::begin(kOrder), std::end(kOrder), test);
   return static_cast<int>(at - std::begin(kOrder));
@@ -194,7 +196,7 @@ void Decide(const VerifyConfig& config, Hypothesis* hypothesis) {
   if (hypothesis->contradictions > config.max_contradiction * hypothesis->near_pairs) {
     hypothesis->test = "contradiction";
   } else if (hypothesis->torn > config.max_torn_share * hypothesis->near_pairs) {
-    hypothesis->test = "look-alike";
+    hypothesis->test = "torn";
   } else if (hypothesis->overlap < config.min_mean_overlap * hypothesis->near_pairs ||
              !LoopsAgree(config, hypothesis->loops)) {
     hypothesis->test = "little agreement";
@@ -220,7 +222,19 @@ Hypothesis Extend(LoopFinder* finder, const VerifiedLoop& seed, const VerifyConf
   return out;
 }
 
-Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const VerifyConfig& config) {
+bool StandsOut(const Hypothesis& hypothesis, LookAlikes* look_alikes, const VerifyConfig& config) {
+  const double overlap_ratio = hypothesis.overlap / hypothesis.near_pairs;
+  const std::vector<VerifiedLoop>& loops = hypothesis.loops;
+  const std::size_t n = std::min(kPlacesCompared, loops.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const VerifiedLoop& loop = loops[i * loops.size() / n];
+    if (overlap_ratio < look_alikes->Level(loop.a, loop.b) + config.min_above_look_alikes) return false;
+  }
+  return true;
+}
+
+Hypothesis FindOverlap(LoopFinder* finder, LookAlikes* look_alikes, const std::vector<Zone>& zones,
+                       const VerifyConfig& config) {
   std::vector<Hypothesis> accepted;
   Hypothesis refused;
   refused.test = "no likeness";
@@ -236,6 +250,7 @@ Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const
       Hypothesis hypothesis;
       if (seed.answer == LoopTry::Answer::kSame) {
         hypothesis = Extend(finder, seed.loop, config);
+        if (hypothesis.test.empty() && !StandsOut(hypothesis, look_alikes, config)) hypothesis.test = "look-alike";
       } else {
         hypothesis.test = seed.test;
       }

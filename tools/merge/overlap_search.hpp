@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/merge/look_alikes.hpp"
 #include "tools/merge/loop_finder.hpp"
 #include "tools/merge/merge_result.hpp"
 #include "tools/merge/zones.hpp"
@@ -27,9 +28,13 @@ struct Hypothesis {
 // Carries the seed along both drives.
 Hypothesis Extend(LoopFinder* finder, const VerifiedLoop& seed, const VerifyConfig& config);
 
+// Do the drives agree by clearly more than any of the places compared resembles other places of its own drive?
+bool StandsOut(const Hypothesis& hypothesis, LookAlikes* look_alikes, const VerifyConfig& config);
+
 // All that one pair of drives has in common. Tries the zones best first; the hypothesis with the most evidence wins,
 // later ones are added where odometry allows both. `test` names what refused the one that came furthest.
-Hypothesis FindOverlap(LoopFinder* finder, const std::vector<Zone>& zones, const VerifyConfig& config);
+Hypothesis FindOverlap(LoopFinder* finder, LookAlikes* look_alikes, const std::vector<Zone>& zones,
+                       const VerifyConfig& config);
 
 // Metres of drive a along which b is near, at least one keyframe spacing when there is a loop.
 double SharedLength(const Drive& a, const std::vector<Loop>& loops, const VerifyConfig& config);

@@ -93,9 +93,11 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   out.difference.drive_a = a;
   out.difference.drive_b = b;
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
+  LookAlikes look_alikes(drive_a, a, drive_b, b, submaps, config);
   const Hypothesis found =
-      FindOverlap(&finder, FindZones(drive_a, drive_b, association.matches, config.zones), config.verify);
+      FindOverlap(&finder, &look_alikes, FindZones(drive_a, drive_b, association.matches, config.zones), config.verify);
   out.asked = finder.asked();
+  out.asked.merge(look_alikes.asked());
   out.overlap.accepted = found.test.empty();
   out.overlap.test = found.test.empty() ? "registration" : found.test;
   if (!out.overlap.accepted) return out;
