@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <map>
+#include <random>
 #include <set>
 #include <stdexcept>
 
@@ -175,6 +179,50 @@ TEST(MergeDrives, GivesTheSameBytesAfterGrowingWithACache) {
   (void)MergeDrives(early, submaps, {}, nullptr, &cache);
   const MergeResult grown = MergeDrives(drives, submaps, {}, nullptr, &cache);
   EXPECT_EQ(Bytes(grown), Bytes(Merged()));
+}
+
+// The fixture's submaps for some of its drives.
+class SubmapsOf : public SubmapSource {
+ public:
+  explicit SubmapsOf(std::vector<int> drives) : drives_(std::move(drives)) {}
+  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override {
+    return all_.Find({drives_[static_cast<std::size_t>(key.drive)], key.keyframe});
+  }
+
+ private:
+  std::vector<int> drives_;
+  RecordedSubmaps all_{Fixture::Get().recorded()};
+};
+
+// Drives come in a random order, in two pieces each, every arrival is merged on what the last merge left, by 1, 2 or 4
+// threads: the last map is the same, bit for bit.
+TEST(MergeDrives, GivesTheSameBytesForAnyOrderOfArrival) {
+  const char* wanted = std::getenv("MAPWELD_ARRIVAL_ORDERS");
+  const int orders = wanted != nullptr ? std::atoi(wanted) : 3;
+  const std::vector<Drive> drives = Fixture::Get().Drives();
+  for (int order = 0; order < orders; ++order) {
+    std::vector<std::size_t> arrivals;
+    for (std::size_t drive = 0; drive < drives.size(); ++drive) arrivals.insert(arrivals.end(), 2, drive);
+    std::shuffle(arrivals.begin(), arrivals.end(), std::mt19937(static_cast<unsigned>(order)));
+    MergeCache cache;
+    std::map<std::size_t, int> pieces;
+    MergeResult result;
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+      ++pieces[arrivals[i]];
+      std::vector<Drive> here;
+      std::vector<int> index;
+      for (const auto& [drive, count] : pieces) {
+        here.push_back(drives[drive]);
+        if (count == 1) here.back().keyframes.resize(here.back().keyframes.size() / 2);
+        index.push_back(static_cast<int>(drive));
+      }
+      MergeConfig config;
+      config.threads = std::array{1, 2, 4}[(i + static_cast<std::size_t>(order)) % 3];
+      SubmapsOf submaps(index);
+      result = MergeDrives(here, submaps, config, nullptr, &cache);
+    }
+    ASSERT_EQ(Bytes(result), Bytes(Merged())) << "order " << order;
+  }
 }
 
 // A source that has only what it was given.
