@@ -62,7 +62,6 @@ Association Associate(const DrivePlaces& a, const DrivePlaces& b, const Associat
   out.compared = true;
   const Cosines cosines = ComputeCosines(a.descriptors, b.descriptors);
   out.matches = ProposeMatches(ComputeLikeness(cosines), config);
-  if (!out.matches.empty()) out.difference = ToImage(cosines, 0, 0);
   out.evidence = {};
   for (const Match& match : out.matches) {
     double& best = match.sequence ? out.evidence.sequence : out.evidence.single;

@@ -18,10 +18,9 @@ struct DrivePlaces {
 DrivePlaces CollectPlaces(const Drive& drive);
 
 struct Association {
-  std::vector<Match> matches;   // lines, then single keyframes, then meetings of the drives' ends; none twice
-  Evidence evidence;            // of the comparison that decided
-  bool compared = false;        // in full
-  DifferenceMatrix difference;  // of a pair with matches, for the report; the drives' numbers are not set
+  std::vector<Match> matches;  // lines, then single keyframes, then meetings of the drives' ends; none twice
+  Evidence evidence;           // of the comparison that decided
+  bool compared = false;       // in full
 };
 
 // No matches: nothing speaks for a common place. Cost for drives of m and n keyframes: about 5 ns x mn for the

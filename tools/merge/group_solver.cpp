@@ -50,6 +50,11 @@ const Keyframe& KeyframeOf(const std::vector<Drive>& drives, int drive, int keyf
   return drives[static_cast<std::size_t>(drive)].keyframes[static_cast<std::size_t>(keyframe)];
 }
 
+bool Counts(const Overlap& overlap, const std::vector<int>& group) {
+  return overlap.accepted && std::binary_search(group.begin(), group.end(), overlap.drive_a) &&
+         std::binary_search(group.begin(), group.end(), overlap.drive_b);
+}
+
 RobustConfig RobustConfigOf(const GraphConfig& config) {
   RobustConfig out;
   out.max_iterations = config.max_iterations;
@@ -59,8 +64,8 @@ RobustConfig RobustConfigOf(const GraphConfig& config) {
 
 }  // namespace
 
-GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
-                         std::vector<Overlap>* overlaps) {
+GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group,
+                         const std::vector<Overlap>& overlaps, const GraphConfig& config) {
   ChainGraph graph;
   std::map<int, int> first_node;
   for (std::size_t chain = 0; chain < group.size(); ++chain) {
@@ -75,28 +80,34 @@ GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int
       }
     }
   }
-  std::vector<Loop*> used;
-  for (Overlap& overlap : *overlaps) {
-    const auto a = first_node.find(overlap.drive_a);
-    const auto b = first_node.find(overlap.drive_b);
-    if (!overlap.accepted || a == first_node.end() || b == first_node.end()) continue;
-    for (Loop& loop : overlap.loops) {
+  for (const Overlap& overlap : overlaps) {
+    if (!Counts(overlap, group)) continue;
+    const int first_a = first_node[overlap.drive_a];
+    const int first_b = first_node[overlap.drive_b];
+    for (const Loop& loop : overlap.loops) {
       const Keyframe& keyframe_a = KeyframeOf(drives, overlap.drive_a, loop.keyframe_a);
       const Keyframe& keyframe_b = KeyframeOf(drives, overlap.drive_b, loop.keyframe_b);
       graph.loops.push_back(
-          LoopEdge(keyframe_a, keyframe_b, loop, a->second + loop.keyframe_a, b->second + loop.keyframe_b, config));
-      used.push_back(&loop);
+          LoopEdge(keyframe_a, keyframe_b, loop, first_a + loop.keyframe_a, first_b + loop.keyframe_b, config));
     }
   }
   const RobustResult solved = SolveRobust(graph, RobustConfigOf(config));
-  for (std::size_t i = 0; i < used.size(); ++i) used[i]->weight = solved.loop_weight[i];
   GroupSolution out;
+  out.loop_weight = solved.loop_weight;
   for (const int drive : group) {
     const auto begin = solved.world_T_node.begin() + first_node[drive];
     out.merged_T_body.emplace_back(
         begin, begin + static_cast<std::ptrdiff_t>(drives[static_cast<std::size_t>(drive)].keyframes.size()));
   }
   return out;
+}
+
+void SetLoopWeights(const std::vector<int>& group, const GroupSolution& solution, std::vector<Overlap>* overlaps) {
+  std::size_t next = 0;
+  for (Overlap& overlap : *overlaps) {
+    if (!Counts(overlap, group)) continue;
+    for (Loop& loop : overlap.loops) loop.weight = solution.loop_weight[next++];
+  }
 }
 
 std::size_t LoopsThatFit(const std::vector<Drive>& drives, const Overlap& overlap,

@@ -12,12 +12,15 @@ namespace mapweld::merge {
 
 struct GroupSolution {
   std::vector<std::vector<geom::Pose3>> merged_T_body;  // per drive of the group, per keyframe
+  std::vector<double> loop_weight;                      // of the loops that counted, in the order of the overlaps
 };
 
-// `group` is sorted. Writes the weight of every loop used into `overlaps`. Only accepted overlaps with both drives in
-// the group count.
-GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
-                         std::vector<Overlap>* overlaps);
+// `group` is sorted. Only accepted overlaps with both drives in the group count.
+GroupSolution SolveGroup(const std::vector<Drive>& drives, const std::vector<int>& group,
+                         const std::vector<Overlap>& overlaps, const GraphConfig& config);
+
+// Writes the weights of a solution into the loops that it counted.
+void SetLoopWeights(const std::vector<int>& group, const GroupSolution& solution, std::vector<Overlap>* overlaps);
 
 // How many loops of the overlap agree with these poses of its drives (per drive and keyframe, in one frame), as the
 // solver would judge them.

@@ -40,17 +40,29 @@ void FormGroups(std::size_t drives, const WeightConfig& config, MergeResult* res
   }
 }
 
-void SolveOne(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
-              MergeResult* result) {
-  if (group.size() == 1) {
-    const auto drive = static_cast<std::size_t>(group.front());
-    for (const Keyframe& keyframe : drives[drive].keyframes)
-      result->merged_T_body[drive].push_back(keyframe.odom_T_body);
-    return;
+GroupSolution SolveOne(const std::vector<Drive>& drives, const std::vector<int>& group, const GraphConfig& config,
+                       const MergeResult& result) {
+  if (group.size() > 1) return SolveGroup(drives, group, result.overlaps, config);
+  GroupSolution alone;
+  alone.merged_T_body.emplace_back();
+  for (const Keyframe& keyframe : drives[static_cast<std::size_t>(group.front())].keyframes) {
+    alone.merged_T_body.front().push_back(keyframe.odom_T_body);
   }
-  GroupSolution solution = SolveGroup(drives, group, config, &result->overlaps);
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    result->merged_T_body[static_cast<std::size_t>(group[i])] = std::move(solution.merged_T_body[i]);
+  return alone;
+}
+
+void SolveAll(const std::vector<Drive>& drives, const GraphConfig& config, Crew* crew, MergeResult* result) {
+  std::vector<GroupSolution> solutions =
+      crew->Do("groups", static_cast<int>(result->groups.size()), [&](int g) -> GroupSolution {
+        return SolveOne(drives, result->groups[static_cast<std::size_t>(g)], config, *result);
+      });
+  result->merged_T_body.assign(drives.size(), {});
+  for (std::size_t g = 0; g < solutions.size(); ++g) {
+    const std::vector<int>& group = result->groups[g];
+    SetLoopWeights(group, solutions[g], &result->overlaps);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      result->merged_T_body[static_cast<std::size_t>(group[i])] = std::move(solutions[g].merged_T_body[i]);
+    }
   }
 }
 
@@ -90,14 +102,12 @@ bool QuarantineWorst(std::size_t drives, const GraphConfig& config, MergeResult*
 
 }  // namespace
 
-void GroupAndSolve(const std::vector<Drive>& drives, const MergeConfig& config, const RunAll& run_all,
-                   MergeResult* result) {
+void GroupAndSolve(const std::vector<Drive>& drives, const MergeConfig& config, Crew* crew, MergeResult* result) {
   do {
     while (QuarantineWorst(drives.size(), config.graph, result)) {
     }
     FormGroups(drives.size(), config.weight, result);
-    result->merged_T_body.assign(drives.size(), {});
-    run_all(result->groups.size(), [&](std::size_t g) { SolveOne(drives, result->groups[g], config.graph, result); });
+    SolveAll(drives, config.graph, crew, result);
   } while (WithdrawDisbelieved(config.graph, result));
 }
 

@@ -45,8 +45,8 @@ std::optional<PairOutcome> MergeCache::FindPair(const std::vector<Drive>& drives
   PairOutcome out = pair.outcome;
   out.asked = Renumber(pair.outcome.asked, pair.outcome.overlap.drive_a, a, b);
   if (!SameAvailability(out.asked, submaps)) return std::nullopt;
-  out.overlap.drive_a = out.difference.drive_a = a;
-  out.overlap.drive_b = out.difference.drive_b = b;
+  out.overlap.drive_a = a;
+  out.overlap.drive_b = b;
   return out;
 }
 

@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
-#include <iterator>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 
 #include "tools/merge/cycle_check.hpp"
+#include "tools/merge/difference.hpp"
 #include "tools/merge/grouping.hpp"
-#include "tools/merge/parallel.hpp"
 
 namespace mapweld::merge {
 namespace {
@@ -39,14 +36,13 @@ struct Pair {
   int a = 0;
   int b = 0;
   Association association;
-  std::optional<PairOutcome> known;  // from the last merge
 };
 
 class Merge {
  public:
-  Merge(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config, Progress* progress,
+  Merge(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config, Crew* crew,
         MergeCache* cache)
-      : drives_(drives), config_(config), submaps_(&submaps), progress_(progress), cache_(cache) {}
+      : drives_(drives), config_(config), submaps_(&submaps), crew_(crew), cache_(cache) {}
 
   MergeResult Run() {
     Time("association", [&] { AssociatePairs(); });
@@ -68,46 +64,44 @@ class Merge {
   // Sketches, difference matrices, sequences: every pair of drives on its own, one job per drive and all those after
   // it.
   void AssociatePairs() {
-    const std::size_t n = drives_.size();
-    places_.resize(n);
-    InParallel("association", n, [&](std::size_t i) { places_[i] = CollectPlaces(drives_[i]); });
-    std::vector<std::vector<Pair>> found(n);
-    InParallel("association", n, [&](std::size_t a) {
-      for (std::size_t b = a + 1; b < n; ++b) {
-        Pair pair{static_cast<int>(a), static_cast<int>(b), {}, {}};
-        if (cache_ != nullptr) pair.known = cache_->FindPair(drives_, pair.a, pair.b, &submaps_);
-        if (!pair.known.has_value()) pair.association = Associate(places_[a], places_[b], config_.association);
-        if (pair.known.has_value() || !pair.association.matches.empty() || cache_ != nullptr) {
-          found[a].push_back(std::move(pair));
-        }
+    std::vector<DrivePlaces> places;
+    for (const Drive& drive : drives_) places.push_back(CollectPlaces(drive));
+    const int n = static_cast<int>(drives_.size());
+    const auto associations = crew_->Do("association", n, [&](int a) {
+      std::vector<Association> with_later;
+      for (int b = a + 1; b < n; ++b) {
+        const bool is_known = cache_ != nullptr && cache_->FindPair(drives_, a, b, &submaps_).has_value();
+        with_later.push_back(is_known ? Association{}
+                                      : Associate(places[static_cast<std::size_t>(a)],
+                                                  places[static_cast<std::size_t>(b)], config_.association));
       }
+      return with_later;
     });
-    for (std::vector<Pair>& of_drive : found) std::move(of_drive.begin(), of_drive.end(), std::back_inserter(pairs_));
+    for (int a = 0; a < n; ++a) {
+      for (int b = a + 1; b < n; ++b) {
+        const Association& found = associations[static_cast<std::size_t>(a)][static_cast<std::size_t>(b - a - 1)];
+        if (!found.matches.empty() || cache_ != nullptr) pairs_.push_back({a, b, found});
+      }
+    }
   }
 
   // Zones and registration, of pairs with matches.
   void SearchPairs() {
-    std::vector<PairOutcome> outcomes(pairs_.size());
-    InParallel("pairs", pairs_.size(), [&](std::size_t i) {
-      Pair& pair = pairs_[i];
-      outcomes[i] = pair.known.has_value() ? std::move(*pair.known)
-                                           : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
+    std::vector<PairOutcome> outcomes = crew_->Do("pairs", static_cast<int>(pairs_.size()), [&](int i) -> PairOutcome {
+      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      std::optional<PairOutcome> known;
+      if (cache_ != nullptr) known = cache_->FindPair(drives_, pair.a, pair.b, &submaps_);
+      return known.has_value() ? std::move(*known)
+                               : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
     });
     for (PairOutcome& outcome : outcomes) {
       if (cache_ != nullptr) cache_->StorePair(drives_, outcome);
       NoteMissing(outcome.asked);
-      if (!outcome.proposed) continue;
-      out_.overlaps.push_back(std::move(outcome.overlap));
-      differences_[{out_.overlaps.back().drive_a, out_.overlaps.back().drive_b}] = std::move(outcome.difference);
+      if (outcome.proposed) out_.overlaps.push_back(std::move(outcome.overlap));
     }
   }
 
-  void GroupAndSolve() {
-    merge::GroupAndSolve(
-        drives_, config_,
-        [this](std::size_t count, const std::function<void(std::size_t)>& job) { InParallel("groups", count, job); },
-        &out_);
-  }
+  void GroupAndSolve() { merge::GroupAndSolve(drives_, config_, crew_, &out_); }
 
   // Loops that the estimate makes visible, between all drives of a group that now come near each other.
   void Refine(int round) {
@@ -118,16 +112,16 @@ class Merge {
       }
     }
     std::sort(pairs.begin(), pairs.end());
-    std::vector<PairRefinement> found(pairs.size());
-    InParallel("refine", pairs.size(), [&](std::size_t i) {
-      const auto [a, b] = pairs[i];
-      const MergeCache::RefineInput input = RefineInputOf(a, b);
-      std::optional<PairRefinement> known;
-      if (cache_ != nullptr) known = cache_->FindRefinement(drives_, a, b, round, input, &submaps_);
-      found[i] = known.has_value()
+    const std::vector<PairRefinement> found =
+        crew_->Do("refine", static_cast<int>(pairs.size()), [&](int i) -> PairRefinement {
+          const auto [a, b] = pairs[static_cast<std::size_t>(i)];
+          const MergeCache::RefineInput input = RefineInputOf(a, b);
+          std::optional<PairRefinement> known;
+          if (cache_ != nullptr) known = cache_->FindRefinement(drives_, a, b, round, input, &submaps_);
+          return known.has_value()
                      ? std::move(*known)
                      : RefinePair(drives_, a, b, input.merged_T_a, input.merged_T_b, input.known, &submaps_, config_);
-    });
+        });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto [a, b] = pairs[i];
       if (cache_ != nullptr) cache_->StoreRefinement(drives_, a, b, round, RefineInputOf(a, b), found[i]);
@@ -181,8 +175,10 @@ class Merge {
 
   void Finish() {
     for (const Overlap& overlap : out_.overlaps) {
-      const auto image = differences_.find({overlap.drive_a, overlap.drive_b});
-      if (overlap.accepted && image != differences_.end()) out_.differences.push_back(std::move(image->second));
+      if (!overlap.accepted) continue;
+      const Drive& a = drives_[static_cast<std::size_t>(overlap.drive_a)];
+      const Drive& b = drives_[static_cast<std::size_t>(overlap.drive_b)];
+      out_.differences.push_back(ToImage(ComputeCosines(a, b), overlap.drive_a, overlap.drive_b));
     }
     out_.missing.assign(missing_.begin(), missing_.end());
   }
@@ -199,18 +195,6 @@ class Merge {
   }
 
   template <class Job>
-  void InParallel(const char* stage, std::size_t count, const Job& job) {
-    int done = 0;
-    std::mutex report;
-    ParallelFor(static_cast<int>(count), config_.threads, [&](int i) {
-      job(static_cast<std::size_t>(i));
-      if (progress_ == nullptr) return;
-      const std::lock_guard lock(report);
-      progress_->Report(stage, ++done, static_cast<int>(count));
-    });
-  }
-
-  template <class Job>
   void Time(const char* stage, const Job& job) {
     const auto begin = std::chrono::steady_clock::now();
     job();
@@ -220,21 +204,25 @@ class Merge {
   const std::vector<Drive>& drives_;
   const MergeConfig& config_;
   PreparedCache submaps_;
-  Progress* progress_;
+  Crew* crew_;
   MergeCache* cache_;
   MergeResult out_;
-  std::map<std::pair<int, int>, DifferenceMatrix> differences_;
-  std::vector<DrivePlaces> places_;  // per drive
-  std::vector<Pair> pairs_;          // that are worth a look
+  std::vector<Pair> pairs_;  // that are worth a look
   std::set<SubmapKey> missing_;
 };
 
 }  // namespace
 
+MergeResult MergeDrives(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config, Crew& crew,
+                        MergeCache* cache) {
+  CheckDrives(drives);
+  return Merge(drives, submaps, config, &crew, cache).Run();
+}
+
 MergeResult MergeDrives(const std::vector<Drive>& drives, SubmapSource& submaps, const MergeConfig& config,
                         Progress* progress, MergeCache* cache) {
-  CheckDrives(drives);
-  return Merge(drives, submaps, config, progress, cache).Run();
+  ThreadCrew crew(config.threads, progress);
+  return MergeDrives(drives, submaps, config, crew, cache);
 }
 
 }  // namespace mapweld::merge

@@ -89,9 +89,6 @@ PairOutcome SearchPair(const std::vector<Drive>& drives, int a, int b, const Ass
   for (const Match& match : association.matches) out.overlap.matches.emplace_back(match.a, match.b);
   out.proposed = !association.matches.empty();
   if (!out.proposed) return out;
-  out.difference = association.difference;
-  out.difference.drive_a = a;
-  out.difference.drive_b = b;
   LoopFinder finder(drive_a, a, drive_b, b, submaps, config);
   LookAlikes look_alikes(drive_a, a, drive_b, b, submaps, config);
   const Hypothesis found =

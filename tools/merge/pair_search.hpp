@@ -15,7 +15,6 @@ struct PairOutcome {
   Overlap overlap;                  // accepted or not, with the loops; weight not yet set
   bool proposed = false;            // association had something to say
   double evidence = 0;              // of the accepted loops, summed
-  DifferenceMatrix difference;      // when proposed
   std::map<SubmapKey, bool> asked;  // submaps wanted, and whether they were there
 };
 

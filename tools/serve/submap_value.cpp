@@ -5,6 +5,9 @@
 #include <map>
 #include <tuple>
 
+#include "tools/merge/cosine_kernel.hpp"
+#include "tools/merge/difference.hpp"
+
 namespace mapweld::serve {
 namespace {
 
@@ -17,19 +20,24 @@ struct Likeness {
   std::vector<double> of_b;
 };
 
-Likeness LikenessOf(const merge::DifferenceMatrix& difference) {
+Likeness LikenessOf(const merge::Drive& a, const merge::Drive& b) {
+  const merge::Cosines cosines = merge::ComputeCosines(a, b);
   Likeness likeness;
-  likeness.of_a.assign(static_cast<std::size_t>(difference.rows), 0);
-  likeness.of_b.assign(static_cast<std::size_t>(difference.cols), 0);
+  likeness.of_a.assign(static_cast<std::size_t>(cosines.rows), 0);
+  likeness.of_b.assign(static_cast<std::size_t>(cosines.cols), 0);
   std::size_t at = 0;
   for (double& row : likeness.of_a) {
     for (double& col : likeness.of_b) {
-      const double alike = 1.0 - difference.distance[at++] / 255.0;
+      const double alike = static_cast<double>(cosines.c[at++]) / merge::kCosineUnit;
       row = std::max(row, alike);
       col = std::max(col, alike);
     }
   }
   return likeness;
+}
+
+bool Wants(const merge::PairOutcome& pair) {
+  return std::any_of(pair.asked.begin(), pair.asked.end(), [](const auto& asked) { return !asked.second; });
 }
 
 double MeanOfBest(std::vector<double> values) {
@@ -53,8 +61,8 @@ std::vector<merge::SubmapKey> ByValue(const std::vector<merge::Drive>& drives, c
   for (int a = 0; a < static_cast<int>(drives.size()); ++a) {
     for (int b = a + 1; b < static_cast<int>(drives.size()); ++b) {
       const auto pair = cache.FindPair(drives, a, b, &prepared);
-      if (!pair.has_value() || pair->difference.distance.empty()) continue;
-      const Likeness likeness = LikenessOf(pair->difference);
+      if (!pair.has_value() || !Wants(*pair)) continue;
+      const Likeness likeness = LikenessOf(drives[static_cast<std::size_t>(a)], drives[static_cast<std::size_t>(b)]);
       const bool apart = result.group_of[static_cast<std::size_t>(a)] != result.group_of[static_cast<std::size_t>(b)];
       const double worth = MeanOfBest(likeness.of_a) * (apart ? kOtherGroup : 1);
       for (const auto& [key, found] : pair->asked) {

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <utility>
 
-#include "tools/merge/difference.hpp"
 #include "tools/merge/parallel.hpp"
 #include "tools/store/method.hpp"
 
@@ -107,9 +106,6 @@ void PairMemory::Fill(merge::MergeCache* cache, merge::SubmapSource* submaps) {
       outcome.proposed = pair->proposed;
       outcome.evidence = pair->evidence;
       for (const auto& [key, found] : pair->asked) outcome.asked[{key.drive == 0 ? a : b, key.keyframe}] = found;
-      // The image is for the report, which shows overlaps only.
-      const bool shown = outcome.proposed || outcome.overlap.accepted;
-      if (shown) outcome.difference = merge::ToImage(merge::ComputeCosines(DriveAt(a), DriveAt(b)), a, b);
       cache->StorePair(*drives_, outcome);
     }
   }

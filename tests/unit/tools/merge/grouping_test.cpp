@@ -48,10 +48,8 @@ class Fleet {
   }
   void Solve(int quarantine_after = 3) {
     config_.graph.quarantine_after = quarantine_after;
-    const RunAll one_by_one = [](std::size_t count, const std::function<void(std::size_t)>& job) {
-      for (std::size_t i = 0; i < count; ++i) job(i);
-    };
-    GroupAndSolve(drives_, config_, one_by_one, &result_);
+    ThreadCrew one_by_one(1, nullptr);
+    GroupAndSolve(drives_, config_, &one_by_one, &result_);
   }
   bool Recall() { return RecallOverlaps(drives_, config_, &result_); }
 

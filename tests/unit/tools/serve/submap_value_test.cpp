@@ -20,21 +20,30 @@ class ThreeDrives {
     for (int d = 0; d < 3; ++d) {
       drives[static_cast<std::size_t>(d)].name = std::string(1, static_cast<char>('a' + d));
       drives[static_cast<std::size_t>(d)].keyframes.resize(4);
+      for (std::size_t k = 0; k < 4; ++k) {
+        place::PlaceDescriptor& of = DescriptorOf(d, k);
+        of.scale = 0.01F;
+        of.q[k == 3 ? 0 : 10 + 4 * static_cast<std::size_t>(d) + k] =
+            100;  // only places number 3 have a part in common
+      }
     }
+    DescriptorOf(1, 3).q[1] = 40;
+    DifferBy(600);
     result.group_of = {0, 1, 2};
-    Pair(0, 1, 20);
-    Pair(0, 2, 220);
+    Pair(0, 1);
+    Pair(0, 2);
     for (int d = 0; d < 3; ++d) {
       for (const int k : {0, 3}) result.missing.push_back({d, k});
     }
   }
-  // `distance` between keyframe 3 of both, 250 elsewhere.
-  void Pair(int a, int b, std::uint8_t distance) {
+  // How unlike drive 2 is at its keyframe 3, against 100 in common.
+  void DifferBy(int part) {
+    for (std::size_t i = 2; i < 8; ++i) DescriptorOf(2, 3).q[i] = static_cast<std::int8_t>(part / 6);
+  }
+  void Pair(int a, int b) {
     merge::PairOutcome outcome;
     outcome.overlap.drive_a = a;
     outcome.overlap.drive_b = b;
-    outcome.difference = {a, b, 4, 4, std::vector<std::uint8_t>(16, 250)};
-    outcome.difference.distance[15] = distance;
     for (const int d : {a, b}) {
       for (const int k : {0, 3}) outcome.asked[{d, k}] = false;
     }
@@ -43,6 +52,9 @@ class ThreeDrives {
   std::vector<merge::SubmapKey> Order() {
     NoSubmaps none;
     return ByValue(drives, result, cache, &none);
+  }
+  place::PlaceDescriptor& DescriptorOf(int drive, std::size_t keyframe) {
+    return drives[static_cast<std::size_t>(drive)].keyframes[keyframe].place.descriptor;
   }
   std::vector<merge::Drive> drives;
   merge::MergeResult result;
@@ -58,7 +70,7 @@ TEST(ByValue, TheMostAlikePlacesOfTheMostAlikeDrivesComeFirst) {
 
 TEST(ByValue, APairThatIsNotYetOneGroupComesBeforeOneThatIs) {
   ThreeDrives three;
-  three.Pair(0, 2, 100);
+  three.DifferBy(300);
   three.result.group_of = {0, 0, 1};
   const std::vector<merge::SubmapKey> order = three.Order();
   EXPECT_EQ(order.front(), (merge::SubmapKey{0, 3}));
