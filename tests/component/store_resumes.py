@@ -12,47 +12,11 @@ import signal
 import subprocess
 import sys
 
-import numpy
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from street_recordings import lasting_files, write_street  # noqa: E402
 
 MAPWELD, WORK = sys.argv[1], pathlib.Path(sys.argv[2])
 KILLS = int(os.environ.get("MAPWELD_KILLS", "6"))
-STEP_M, RANGE_M = 2.0, 30.0
-
-
-def town(rng):
-    """Points of the walls along a street of 260 m."""
-    points = []
-    for side in (-1, 1):
-        x = rng.uniform(0, 6)
-        while x < 260:
-            width, depth, setback, height = rng.uniform([6, 5, 6, 3], [16, 12, 12, 9])
-            for z in numpy.arange(0.1, height, 0.6):
-                for y in (setback, setback + depth):
-                    along = numpy.arange(x, x + width, 0.6)
-                    points.append(numpy.column_stack([along, numpy.full_like(along, side * y), numpy.full_like(along, z)]))
-                for at in (x, x + width):
-                    across = numpy.arange(setback, setback + depth, 0.6)
-                    points.append(numpy.column_stack([numpy.full_like(across, at), side * across, numpy.full_like(across, z)]))
-            x += width + rng.uniform(1, 9)
-    return numpy.concatenate(points)
-
-
-def record(folder, walls, x0, x1, rng):
-    """A drive from x0 to x1 in KITTI layout, in a frame of its own."""
-    (folder / "velodyne").mkdir(parents=True)
-    sign = 1 if x1 > x0 else -1
-    rows = []
-    for i, x in enumerate(numpy.arange(x0, x1, sign * STEP_M)):
-        ground = numpy.stack(numpy.meshgrid(numpy.arange(x - RANGE_M, x + RANGE_M, 1.5), numpy.arange(-RANGE_M, RANGE_M, 1.5)), -1)
-        ground = numpy.column_stack([ground.reshape(-1, 2), numpy.zeros(ground.size // 2)])
-        seen = numpy.concatenate([walls[numpy.abs(walls[:, 0] - x) < RANGE_M], ground]) - [x, 0, 1.8]
-        seen[:, :2] *= sign
-        scan = numpy.zeros((len(seen), 4), numpy.float32)
-        scan[:, :3] = seen + rng.normal(0, 0.02, seen.shape)
-        scan.tofile(folder / "velodyne" / f"{i:06d}.bin")
-        rows.append([1, 0, 0, i * STEP_M * (1 + 0.003 * sign), 0, 1, 0, 0, 0, 0, 1, 0])
-    numpy.savetxt(folder / "poses.txt", rows)
-    numpy.savetxt(folder / "times.txt", numpy.arange(len(rows)) * 0.2)
 
 
 def merge(out, drives, *options):
@@ -63,24 +27,15 @@ def run(command, **options):
     return subprocess.run(command, capture_output=True, text=True, **options)
 
 
-def result(out):
-    """What must not depend on how the run went: everything but the times in report and summary."""
-    return {f.name: f.read_bytes() for f in sorted((WORK / out).iterdir())
-            if f.suffix in (".tum", ".ply", ".pcd", ".g2o", ".txt") or f.name in ("overlaps.json", "groups.json")}
-
-
 def check(condition, sentence):
     if not condition:
         sys.exit(f"store_resumes: {sentence}")
 
 
 shutil.rmtree(WORK, ignore_errors=True)
-rng = numpy.random.default_rng(3)
-walls = town(rng)
-for name, x0, x1 in (("a", 0, 140), ("b", 230, 60), ("c", 110, 250)):
-    record(WORK / name, walls, x0, x1, rng)
+write_street(WORK)
 at_once = run(merge("at_once", "abc"), check=True)
-reference = result("at_once")
+reference = lasting_files(WORK / "at_once")
 check("3 drives in 1 group" in at_once.stdout, f"the street is not one group, so the test says little:\n{at_once.stdout}")
 check(len(reference) >= 8, f"only {sorted(reference)} to compare")
 
@@ -88,11 +43,11 @@ check(len(reference) >= 8, f"only {sorted(reference)} to compare")
 store = str(WORK / "city.db")
 run(merge("today", "ab", "--store", store), check=True)
 tomorrow = run(merge("tomorrow", "c", "--store", store), check=True)
-check(result("tomorrow") == reference, "a drive added tomorrow gives another map than all at once")
+check(lasting_files(WORK / "tomorrow") == reference, "a drive added tomorrow gives another map than all at once")
 check("a: submaps" not in tomorrow.stderr, "a was built again")
 check("2 pairs of them searched now, 1 before" in tomorrow.stderr, f"not only what is new was searched: {tomorrow.stderr}")
 again = run(merge("again", "", "--store", store), check=True)
-check(result("again") == reference, "what the store holds was not merged as it was")
+check(lasting_files(WORK / "again") == reference, "what the store holds was not merged as it was")
 check("0 pairs of them searched now" in again.stderr, f"something was searched again: {again.stderr}")
 
 # Decisions by hand.
@@ -131,5 +86,5 @@ for i in range(KILLS):
         fsck = run([MAPWELD, "fsck", store])
         check(fsck.returncode == 0 or "is empty" in fsck.stderr, f"after kill {i}: {fsck.stdout}{fsck.stderr}")
 run(merge("killed", "abc", "--store", store), check=True)
-check(result("killed") == reference, "after the kills the map is another one")
+check(lasting_files(WORK / "killed") == reference, "after the kills the map is another one")
 print(f"store_resumes: {KILLS} kills, {len(reference)} files identical to an undisturbed merge")

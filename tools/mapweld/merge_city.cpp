@@ -15,14 +15,15 @@ namespace {
 
 class MemoryCity final : public MergeCity {
  public:
-  explicit MemoryCity(const std::vector<MergeInput>& inputs) {
+  MemoryCity(const std::vector<MergeInput>& inputs, Crew* crew) : crew_(crew) {
     for (const MergeInput& input : inputs) {
       built_.push_back(input.build());
       drives_.push_back(built_.back().drive);
     }
   }
   MergeResult Merge(const MergeConfig& config, Progress* progress) override {
-    return MergeDrives(drives_, *this, config, progress);
+    return crew_ != nullptr ? MergeDrives(drives_, *this, config, *crew_)
+                            : MergeDrives(drives_, *this, config, progress);
   }
   std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override {
     const auto drive = static_cast<std::size_t>(key.drive);
@@ -31,6 +32,7 @@ class MemoryCity final : public MergeCity {
   store::ScanTrajectory Scans(std::size_t drive) override { return built_[drive].scans; }
 
  private:
+  Crew* crew_;
   std::vector<BuiltDrive> built_;
 };
 
@@ -138,8 +140,8 @@ std::vector<std::vector<io::StampedPose>> MergeCity::Trajectories(const MergeRes
   return out;
 }
 
-std::unique_ptr<MergeCity> CityInMemory(const std::vector<MergeInput>& inputs) {
-  return std::make_unique<MemoryCity>(inputs);
+std::unique_ptr<MergeCity> CityInMemory(const std::vector<MergeInput>& inputs, Crew* crew) {
+  return std::make_unique<MemoryCity>(inputs, crew);
 }
 
 std::unique_ptr<MergeCity> CityInStore(const std::filesystem::path& store, const std::vector<MergeInput>& inputs,

@@ -9,6 +9,7 @@
 
 #include "tools/io/tum.hpp"
 #include "tools/mapweld/merge_inputs.hpp"
+#include "tools/merge/crew.hpp"
 #include "tools/merge/merge_config.hpp"
 #include "tools/merge/merge_result.hpp"
 
@@ -27,8 +28,8 @@ class MergeCity : public SubmapSource {
   std::vector<Drive> drives_;
 };
 
-// Builds all inputs.
-std::unique_ptr<MergeCity> CityInMemory(const std::vector<MergeInput>& inputs);
+// Builds all inputs. crew: who merges them, and must outlive the city; null for the threads of this process.
+std::unique_ptr<MergeCity> CityInMemory(const std::vector<MergeInput>& inputs, Crew* crew);
 
 // Builds the inputs that the store does not hold yet, and keeps each as soon as it is built; the same for every pair of
 // drives that is searched, and for the result. What was interrupted goes on where it was. Drives in quarantine are left

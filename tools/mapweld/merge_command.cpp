@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/mapweld/interrupt.hpp"
@@ -55,18 +56,23 @@ std::map<std::string, std::filesystem::path> TruthOf(const MergeArguments& argum
   return truth;
 }
 
-void RunMerge(const MergeArguments& arguments) {
+void RunMerge(const MergeArguments& arguments, const MakeCrew& make_crew) {
   if (arguments.inputs.empty() && arguments.store.empty()) {
     throw std::runtime_error("merge: name some recordings, or a --store that holds some");
+  }
+  if (make_crew && !arguments.store.empty()) {
+    throw std::runtime_error("merge: a store is kept by one process; merge without --store");
   }
   const CleanInterrupt interrupt(arguments.store.empty()
                                      ? "merge: interrupted"
                                      : "merge: interrupted; the same command goes on where this one was");
   TerminalProgress progress("merge");
+  const std::unique_ptr<Crew> crew = make_crew ? make_crew(&progress) : nullptr;
+  if (crew != nullptr && !crew->Leads()) progress.Silence();
   const auto begin = Clock::now();
   const std::vector<MergeInput> inputs = OpenInputs(arguments.inputs, arguments.threads, &progress);
   const std::unique_ptr<MergeCity> city =
-      arguments.store.empty() ? CityInMemory(inputs) : CityInStore(arguments.store, inputs, &progress);
+      arguments.store.empty() ? CityInMemory(inputs, crew.get()) : CityInStore(arguments.store, inputs, &progress);
   const std::map<std::string, std::filesystem::path> truth = TruthOf(arguments, city->drives());
   progress.SetSubject("");
   const double build_s = SecondsSince(begin);
@@ -75,6 +81,7 @@ void RunMerge(const MergeArguments& arguments) {
   config.threads = arguments.threads;
   config.association.sketches = arguments.sketches;
   const MergeResult result = city->Merge(config, &progress);
+  if (crew != nullptr && !crew->Leads()) return;
 
   report::OutcomeInput outcome;
   outcome.title = fmt::format("Map of {} recordings", city->drives().size());
@@ -92,7 +99,7 @@ void RunMerge(const MergeArguments& arguments) {
 
 }  // namespace
 
-void AddMergeCommand(CLI::App& app) {
+void AddMergeCommand(CLI::App& app, MakeCrew make_crew) {
   CLI::App* const command =
       app.add_subcommand("merge", "Merge recordings of any LiDAR odometry, or LCM logs of Mapweld's agents");
   const auto arguments = std::make_shared<MergeArguments>();
@@ -110,7 +117,7 @@ void AddMergeCommand(CLI::App& app) {
                     "for many drives: compare only pairs whose 256-bit sketches agree; may lose short meetings");
   command->add_option("--threads", arguments->threads, "0: all of the machine; never changes the result")
       ->check(CLI::Range(0, 1024));
-  command->callback([arguments] { RunMerge(*arguments); });
+  command->callback([arguments, make_crew = std::move(make_crew)] { RunMerge(*arguments, make_crew); });
 }
 
 }  // namespace mapweld::merge

@@ -3,9 +3,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+
+#include "tools/merge/crew.hpp"
 
 namespace mapweld::merge {
 
-void AddMergeCommand(CLI::App& app);
+// Makes the crew that does the work, once the arguments are known; it reports to the progress, which outlives it.
+using MakeCrew = std::function<std::unique_ptr<Crew>(Progress* progress)>;
+
+// make_crew: null for the threads of this process.
+void AddMergeCommand(CLI::App& app, MakeCrew make_crew = nullptr);
 
 }  // namespace mapweld::merge

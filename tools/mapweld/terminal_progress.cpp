@@ -15,7 +15,7 @@ void TerminalProgress::Report(std::string_view stage, int done, int total) {
   const auto now = std::chrono::steady_clock::now();
   const bool finished = done >= total;
   const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(10);
-  if (!finished && now - last_ < pause) return;
+  if (silent_ || (!finished && now - last_ < pause)) return;
   last_ = now;
   const std::string text =
       fmt::format("{}: {}{}{} {}/{}", command_, subject_, subject_.empty() ? "" : ": ", stage, done, total);

@@ -16,6 +16,8 @@ class TerminalProgress final : public Progress {
   explicit TerminalProgress(std::string command);
   // What the next stages work on, for example the name of a recording; may be empty.
   void SetSubject(std::string subject) { subject_ = std::move(subject); }
+  // From now on it says nothing: another process tells the same.
+  void Silence() { silent_ = true; }
   void Report(std::string_view stage, int done, int total) override;
   // Ends an unfinished line.
   void Finish();
@@ -24,6 +26,7 @@ class TerminalProgress final : public Progress {
   std::string command_;
   std::string subject_;
   bool terminal_;
+  bool silent_ = false;
   bool line_open_ = false;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };

@@ -29,6 +29,8 @@ class Crew {
   virtual std::vector<PairOutcome> Do(const char* stage, int count, const Job<PairOutcome>& job) = 0;
   virtual std::vector<PairRefinement> Do(const char* stage, int count, const Job<PairRefinement>& job) = 0;
   virtual std::vector<GroupSolution> Do(const char* stage, int count, const Job<GroupSolution>& job) = 0;
+  // Is this the process that tells the world? Of several processes with one result only one writes it.
+  [[nodiscard]] virtual bool Leads() const { return true; }
 };
 
 // The threads of this process.
