@@ -94,6 +94,7 @@ Summary Summarise(const OutcomeInput& input, const Errors& errors) {
   }
   summary.groups = static_cast<int>(input.result->groups.size());
   summary.rmse_all_m = errors.all_m;
+  summary.group_rmse_m = errors.group_rmse_m;
   for (const merge::Overlap& overlap : input.result->overlaps) {
     ++(overlap.accepted ? summary.overlaps_accepted : summary.overlaps_rejected);
   }

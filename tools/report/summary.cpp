@@ -48,6 +48,25 @@ std::string Cell(const std::optional<double>& value, const char* format) {
   return value.has_value() ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
+std::string GroupLines(const Summary& summary) {
+  std::string out;
+  for (std::size_t g = 0; g < summary.group_rmse_m.size(); ++g) {
+    if (!summary.group_rmse_m[g].has_value()) continue;
+    int drives = 0;
+    double path_m = 0;
+    for (const DriveSummary& drive : summary.drives) {
+      if (drive.group != static_cast<int>(g) + 1) continue;
+      ++drives;
+      path_m += drive.path_m;
+    }
+    if (drives < 2) continue;
+    const double rmse_m = *summary.group_rmse_m[g];
+    out += fmt::format("group {}: {} drives, {:.2f} km, rmse {:.3f} m, {:.4f} % of its length\n", g + 1, drives,
+                       path_m / 1000, rmse_m, 100 * rmse_m / path_m);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string SummaryJson(const Summary& summary) {
@@ -61,6 +80,9 @@ std::string SummaryJson(const Summary& summary) {
   }
   rmse["all"] = OrNull(summary.rmse_all_m);
   json["rmse_m"] = rmse;
+  Json group_rmse = Json::array();
+  for (const std::optional<double>& of_group : summary.group_rmse_m) group_rmse.push_back(OrNull(of_group));
+  json["group_rmse_m"] = group_rmse;
   json["bytes_per_km"] = PerKm(summary, &DriveSummary::bytes_sent);
   json["keyframe_bytes_per_km"] = PerKm(summary, &DriveSummary::keyframe_bytes);
   json["submap_bytes_per_km"] = PerKm(summary, &DriveSummary::submap_bytes);
@@ -87,6 +109,7 @@ std::string SummaryTable(const Summary& summary) {
                        Cell(per_km(drive.bytes_sent), "{:.0f}"), Cell(per_km(drive.keyframe_bytes), "{:.0f}"),
                        drive.heap_calls.has_value() ? std::to_string(*drive.heap_calls) : "-");
   }
+  if (summary.groups > 1) out += GroupLines(summary);
   out += fmt::format("{} drives in {} group{}; {} overlaps accepted, {} rejected; rmse over all {} m\n",
                      summary.drives.size(), summary.groups, summary.groups == 1 ? "" : "s", summary.overlaps_accepted,
                      summary.overlaps_rejected, Cell(summary.rmse_all_m, "{:.3f}"));

@@ -26,6 +26,7 @@ struct DriveSummary {
 struct Summary {
   std::vector<DriveSummary> drives;
   int groups = 0;
+  std::vector<std::optional<double>> group_rmse_m;  // per group, after one alignment of the whole group to the truth
   std::optional<double> rmse_all_m;  // over all drives with truth, each group aligned by one rigid transform
   int overlaps_accepted = 0;
   int overlaps_rejected = 0;
@@ -35,6 +36,7 @@ struct Summary {
 // {"groups": n, "rmse_m": {name: m, "all": m}, "bytes_per_km": {name: n, "all": n}, "heap_calls_after_boot": n,
 //  "seconds": {stage: s}, ...}. What is not known is null.
 std::string SummaryJson(const Summary& summary);
+// One line per drive, one per group of several drives whose truth is known, and the totals.
 std::string SummaryTable(const Summary& summary);
 
 }  // namespace mapweld::report
