@@ -260,9 +260,16 @@ void MeasureNewDrive(const City& city, Table* table) {
   table->Row(fmt::format("one more drive of {} keyframes", kPerDrive), Median(seconds), "exact");
 }
 
-void Run(int keyframes, bool exact, bool peers, Table* table) {
+struct Wanted {
+  int keyframes = 24000;
+  bool exact = true;
+  bool peers = false;
+  bool new_drive_only = false;
+};
+
+void Run(const Wanted& wanted, Table* table) {
   test::CityDescriptorsConfig config;
-  config.drives = std::max(2, keyframes / kPerDrive);
+  config.drives = std::max(2, wanted.keyframes / kPerDrive);
   config.keyframes = kPerDrive;
   // As many streets per drive as 50 drives have in 6 x 6 km.
   config.blocks = static_cast<int>(60 * std::sqrt(config.drives / 50.0) + 0.5);
@@ -271,10 +278,10 @@ void Run(int keyframes, bool exact, bool peers, Table* table) {
   for (const Drive& drive : city.drives) city.places.push_back(merge::CollectPlaces(drive));
   MeasureKernels(city, table);
   Hits hits;
-  if (exact) hits = MeasureExact(city, true, table);
-  MeasureSelected(city, hits, exact, table);
+  if (wanted.exact && !wanted.new_drive_only) hits = MeasureExact(city, true, table);
+  if (!wanted.new_drive_only) MeasureSelected(city, hits, wanted.exact, table);
   MeasureNewDrive(city, table);
-  if (peers) {
+  if (wanted.peers) {
     for (const PeerResult& peer : MeasurePeers(city.drives)) table->Row(peer.what, peer.cpu_s, peer.remark);
   }
 }
@@ -284,18 +291,19 @@ void Run(int keyframes, bool exact, bool peers, Table* table) {
 
 int main(int argc, char** argv) {
   CLI::App app("Association of made-up descriptors, stage by stage: CPU seconds of one thread");
-  int keyframes = 24000;
+  mapweld::bench::Wanted wanted;
   bool json = false;
   bool skip_exact = false;
-  bool peers = false;
-  app.add_option("--keyframes", keyframes, "of all drives together, 480 each")->check(CLI::Range(960, 10000000));
+  app.add_option("--keyframes", wanted.keyframes, "of all drives together, 480 each")->check(CLI::Range(960, 10000000));
   app.add_flag("--json", json, "for programs");
   app.add_flag("--skip-exact", skip_exact, "only the way the merge does it");
-  app.add_flag("--peers", peers, "also FAISS, when this was built with it");
+  app.add_flag("--new-drive", wanted.new_drive_only, "only what one more drive costs");
+  app.add_flag("--peers", wanted.peers, "also FAISS, when this was built with it");
   CLI11_PARSE(app, argc, argv);
+  wanted.exact = !skip_exact;
   mapweld::bench::Table table;
   if (json) table.UseJson();
-  mapweld::bench::Run(keyframes, !skip_exact, peers, &table);
+  mapweld::bench::Run(wanted, &table);
   table.Finish();
   return 0;
 }
