@@ -42,7 +42,7 @@ struct SubmapKey {
 };
 
 // Where the merge gets submaps. Find returns null for one that has not arrived yet; the merge then goes on without it
-// and lists it as missing, so that the caller can fetch it and merge again. Never called by two threads at once.
+// and lists it as missing, so that the caller can fetch it and merge again. Called by several threads at once.
 class SubmapSource {
  public:
   virtual ~SubmapSource() = default;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -13,7 +12,7 @@
 namespace mapweld::merge {
 
 // Prepares every submap once and keeps the `capacity` last used (about 0.7 MB each: 280 MB). Safe to call from several
-// threads; the source is only ever asked by one at a time.
+// threads, which wait for each other only where they want the same submap. What the source lacks stays missing.
 class PreparedCache {
  public:
   explicit PreparedCache(SubmapSource* source, std::size_t capacity = 400) : source_(source), capacity_(capacity) {}
@@ -24,7 +23,6 @@ class PreparedCache {
  private:
   struct Slot {
     std::once_flag once;
-    std::atomic<bool> ready = false;
     std::shared_ptr<const PreparedSubmap> prepared;
     std::uint64_t last_use = 0;
   };

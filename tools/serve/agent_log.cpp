@@ -54,15 +54,24 @@ std::optional<WholeSubmap> AgentLog::Whole(std::size_t drive, std::int32_t keyfr
   const auto pieces = pieces_.find({ids_.at(drive), keyframe});
   if (pieces == pieces_.end()) return std::nullopt;
   FleetStore assembly;
-  for (const long offset : pieces->second) {
-    mapweldlcm::submap_chunk_t message;
-    if (std::fseek(file_.getFilePtr(), offset, SEEK_SET) != 0) return std::nullopt;
-    const lcm::LogEvent* event = file_.readNextEvent();
-    if (event == nullptr || messages::Decode(BytesOf(*event), &message) != Status::kOk) return std::nullopt;
+  for (const mapweldlcm::submap_chunk_t& message : Read(pieces->second)) {
     auto whole = assembly.Assemble(message);
     if (whole.has_value()) return whole;
   }
   return std::nullopt;
+}
+
+std::vector<mapweldlcm::submap_chunk_t> AgentLog::Read(const std::vector<long>& offsets) {
+  const std::lock_guard lock(file_mutex_);
+  std::vector<mapweldlcm::submap_chunk_t> read;
+  for (const long offset : offsets) {
+    if (std::fseek(file_.getFilePtr(), offset, SEEK_SET) != 0) break;
+    const lcm::LogEvent* event = file_.readNextEvent();
+    mapweldlcm::submap_chunk_t message;
+    if (event == nullptr || messages::Decode(BytesOf(*event), &message) != Status::kOk) break;
+    read.push_back(std::move(message));
+  }
+  return read;
 }
 
 std::shared_ptr<const merge::SubmapCloud> AgentLog::Submap(std::size_t drive, std::int32_t keyframe) {

@@ -8,6 +8,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@
 namespace mapweld::serve {
 
 // Reads the log once for its keyframes and remembers where the pieces of each submap lie; a submap is read when it is
-// asked for. Not thread safe.
+// asked for. Submaps may be asked for by several threads.
 class AgentLog {
  public:
   // Throws std::runtime_error naming the file when it cannot be read or holds no keyframes. Messages of other programs
@@ -34,7 +35,11 @@ class AgentLog {
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
  private:
+  // The messages at these places of the file, up to the first that cannot be read.
+  std::vector<mapweldlcm::submap_chunk_t> Read(const std::vector<long>& offsets);
+
   std::filesystem::path path_;
+  std::mutex file_mutex_;
   lcm::LogFile file_;
   std::vector<DriveId> ids_;
   std::vector<merge::Drive> drives_;

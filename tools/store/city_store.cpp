@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace mapweld::store {
 namespace {
 
@@ -140,18 +138,7 @@ std::vector<std::string> CityStore::damage() {
 std::shared_ptr<const merge::SubmapCloud> CitySubmaps::Find(merge::SubmapKey key) {
   const auto drive = static_cast<std::size_t>(key.drive);
   if (key.drive < 0 || drive >= keys_.size()) return nullptr;
-  auto known = kept_.find(key);
-  if (known == kept_.end()) {
-    auto cloud = store_->Submap(keys_[drive], key.keyframe);
-    if (cloud == nullptr) return nullptr;
-    if (kept_.size() >= kKept) {
-      kept_.erase(std::min_element(kept_.begin(), kept_.end(),
-                                   [](const auto& x, const auto& y) { return x.second.last_use < y.second.last_use; }));
-    }
-    known = kept_.emplace(key, Entry{std::move(cloud), 0}).first;
-  }
-  known->second.last_use = ++uses_;
-  return known->second.cloud;
+  return store_->Submap(keys_[drive], key.keyframe);
 }
 
 }  // namespace mapweld::store

@@ -83,7 +83,7 @@ class CityStore {
 // "keyframe 17 of agent_3"; drives without a readable name are "drive 4".
 std::string RecordName(Table table, std::int64_t key, const std::map<DriveKey, std::string>& names);
 
-// The submaps of stored drives, for the merge. Keeps the last used.
+// The submaps of stored drives, for the merge.
 class CitySubmaps final : public merge::SubmapSource {
  public:
   // keys: of the drives in the order given to the merge.
@@ -91,15 +91,8 @@ class CitySubmaps final : public merge::SubmapSource {
   std::shared_ptr<const merge::SubmapCloud> Find(merge::SubmapKey key) override;
 
  private:
-  static constexpr std::size_t kKept = 1000;  // about 200 kB each
-  struct Entry {
-    std::shared_ptr<const merge::SubmapCloud> cloud;
-    std::uint64_t last_use = 0;
-  };
   CityStore* store_;
   std::vector<DriveKey> keys_;
-  std::map<merge::SubmapKey, Entry> kept_;
-  std::uint64_t uses_ = 0;
 };
 
 }  // namespace mapweld::store

@@ -42,7 +42,7 @@ class RandomStreets : public SubmapSource {
     }
     return cloud;
   }
-  int asked = 0;
+  std::atomic<int> asked = 0;
 };
 
 TEST(MergeDrives, NeverMergesAnyOfAThousandUnrelatedPairs) {
