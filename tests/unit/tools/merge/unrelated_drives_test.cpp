@@ -2,6 +2,7 @@
 // Drives that have nothing in common must stay apart, every time.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <random>
