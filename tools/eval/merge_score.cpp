@@ -17,6 +17,34 @@ NamePair Ordered(std::string a, std::string b) {
   return a < b ? NamePair{std::move(a), std::move(b)} : NamePair{std::move(b), std::move(a)};
 }
 
+// The truth of the drives that are in some group.
+MergeTruth TruthOfMerged(const MergeTruth& truth, const MergeOutcome& outcome) {
+  MergeTruth out;
+  for (const std::vector<std::string>& group : outcome.groups) {
+    for (const std::string& name : group) {
+      if (!truth.names.contains(name)) throw std::runtime_error(fmt::format("the truth has no drive '{}'", name));
+      out.names.insert(name);
+    }
+  }
+  const auto merged = [&](const NamePair& pair) {
+    return out.names.contains(pair.first) && out.names.contains(pair.second);
+  };
+  for (const auto& [pair, shared_m] : truth.overlaps) {
+    if (merged(pair)) out.overlaps.emplace(pair, shared_m);
+  }
+  for (const NamePair& pair : truth.crossings) {
+    if (merged(pair)) out.crossings.insert(pair);
+  }
+  return out;
+}
+
+// At most this many lines of one kind; a table that nobody reads to its end says nothing.
+constexpr std::size_t kMostLines = 20;
+
+std::string AndMore(std::size_t lines) {
+  return lines > kMostLines ? fmt::format("... and {} more; --json has all\n", lines - kMostLines) : "";
+}
+
 }  // namespace
 
 std::map<std::string, std::string> ZonesOf(const MergeTruth& truth) {
@@ -82,8 +110,10 @@ double MergeScore::Recall() const {
   return true_overlaps > 0 ? static_cast<double>(found) / true_overlaps : 1;
 }
 
-MergeScore ScoreMerge(const MergeTruth& truth, const MergeOutcome& outcome) {
+MergeScore ScoreMerge(const MergeTruth& whole_truth, const MergeOutcome& outcome) {
+  const MergeTruth truth = TruthOfMerged(whole_truth, outcome);
   MergeScore score;
+  score.not_merged = static_cast<int>(whole_truth.names.size() - truth.names.size());
   score.accepted = static_cast<int>(outcome.accepted.size());
   score.true_overlaps = static_cast<int>(truth.overlaps.size());
   for (const NamePair& pair : outcome.accepted) {
@@ -109,11 +139,7 @@ MergeScore ScoreMerge(const MergeTruth& truth, const MergeOutcome& outcome) {
   score.groups = static_cast<int>(outcome.groups.size());
   for (const std::vector<std::string>& group : outcome.groups) {
     std::set<std::string> of_group;
-    for (const std::string& name : group) {
-      const auto zone = zones.find(name);
-      if (zone == zones.end()) throw std::runtime_error(fmt::format("the truth has no drive '{}'", name));
-      of_group.insert(zone->second);
-    }
+    for (const std::string& name : group) of_group.insert(zones.at(name));
     score.impure_groups += of_group.size() > 1 ? 1 : 0;
   }
   return score;
@@ -126,12 +152,19 @@ std::string ScoreTable(const MergeScore& score) {
       "groups: {} of {} zones, {} of them mixed\n",
       score.true_overlaps, score.found, score.wrong.size(), score.accepted, score.crossings_found, score.Precision(),
       score.Recall(), score.groups, score.zones, score.impure_groups);
-  for (const auto& [a, b] : score.wrong) out += fmt::format("wrong: {} {}\n", a, b);
-  for (const MissedOverlap& m : score.missed) {
+  if (score.not_merged > 0) {
+    out += fmt::format("{} drives of the scenario are in no group and do not count\n", score.not_merged);
+  }
+  for (std::size_t i = 0; i < std::min(kMostLines, score.wrong.size()); ++i) {
+    out += fmt::format("wrong: {} {}\n", score.wrong[i].first, score.wrong[i].second);
+  }
+  out += AndMore(score.wrong.size());
+  for (std::size_t i = 0; i < std::min(kMostLines, score.missed.size()); ++i) {
+    const MissedOverlap& m = score.missed[i];
     out += fmt::format("missed: {} {}, {:.0f} m together: {}\n", m.pair.first, m.pair.second, m.shared_m,
                        m.test.empty() ? "never proposed" : m.test);
   }
-  return out;
+  return out + AndMore(score.missed.size());
 }
 
 std::string ScoreJson(const MergeScore& score) {
@@ -149,6 +182,7 @@ std::string ScoreJson(const MergeScore& score) {
                      {"crossings_found", score.crossings_found},
                      {"groups", score.groups},
                      {"zones", score.zones},
+                     {"not_merged", score.not_merged},
                      {"impure_groups", score.impure_groups},
                      {"wrong", wrong},
                      {"missed", missed}};

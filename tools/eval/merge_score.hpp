@@ -42,8 +42,10 @@ struct MissedOverlap {
 
 // precision = accepted pairs that meet in truth / accepted pairs (1 when none was accepted); recall = true overlaps
 // that were accepted / true overlaps. Accepted crossings are right, but not asked for by recall. A group is pure when
-// all its drives belong to one zone: drives that are connected by true overlaps or crossings.
+// all its drives belong to one zone: drives that are connected by true overlaps or crossings. Only drives that were
+// merged count: those of a scenario that are in no group are told, and otherwise as if they had never been driven.
 struct MergeScore {
+  int not_merged = 0;  // drives of the scenario that are in no group
   int accepted = 0;
   int true_overlaps = 0;
   int found = 0;

@@ -47,6 +47,34 @@ TEST(MergeScore, IsPerfectForAPerfectMergeAndForNothingToMerge) {
   EXPECT_EQ(nothing.Recall(), 1);
 }
 
+TEST(MergeScore, CountsOnlyDrivesThatWereMerged) {
+  MergeTruth truth;
+  truth.names = {"a", "b", "c", "d"};
+  truth.overlaps = {{{"a", "b"}, 100}, {{"b", "c"}, 80}, {{"c", "d"}, 60}};
+  MergeOutcome outcome;
+  outcome.accepted = {{"a", "b"}};
+  outcome.groups = {{"a", "b"}};
+  const MergeScore score = ScoreMerge(truth, outcome);
+  EXPECT_EQ(score.not_merged, 2);
+  EXPECT_EQ(score.true_overlaps, 1);
+  EXPECT_EQ(score.Recall(), 1);
+  EXPECT_EQ(score.zones, 1);
+  EXPECT_THAT(ScoreTable(score), ::testing::HasSubstr("2 drives of the scenario are in no group"));
+}
+
+TEST(MergeScore, TellsOnlyTheLongestOfManyMissedOverlaps) {
+  MergeTruth truth;
+  MergeOutcome outcome;
+  for (char name = 'a'; name <= 'z'; ++name) {
+    truth.names.insert({name});
+    outcome.groups.push_back({{name}});
+    if (name > 'a') truth.overlaps[{"a", {name}}] = name;
+  }
+  const std::string table = ScoreTable(ScoreMerge(truth, outcome));
+  EXPECT_THAT(table, ::testing::HasSubstr("missed: a z, 122 m together"));
+  EXPECT_THAT(table, ::testing::HasSubstr("... and 5 more"));
+}
+
 TEST(MergeScore, ReadsWhatTheSimulatorAndTheMergeWrite) {
   const test::TempFolder folder;
   const auto truth = folder.Put("scenario.json", R"({"vehicles": [{"id": 1}, {"id": 2}], "overlaps_of_whole_routes": [
