@@ -124,10 +124,37 @@ def planarity(scan, size=1.0, least=8):
     return np.sqrt(np.maximum(np.linalg.eigvalsh(moments[counts >= least])[:, 0], 0))
 
 
-def per_beam(seen, beams_deg):
-    """Points of each beam of one scan, by the nearest nominal elevation."""
+def beam_of(seen, beams_deg):
+    """Which beam each point of one scan is of: by the order of the file where that is beam after beam, each once around
+    (KITTI), else by the nearest nominal elevation."""
+    azimuth = np.arctan2(seen[:, 1], seen[:, 0])
+    beam = np.r_[0, np.cumsum((azimuth[:-1] < 0) & (azimuth[1:] >= 0) & (azimuth[1:] - azimuth[:-1] < np.pi))]
+    if beam[-1] + 1 == len(beams_deg):
+        return beam
     elevation = np.degrees(np.arcsin(seen[:, 2] / np.linalg.norm(seen, axis=1)))
-    return np.bincount(np.abs(elevation[:, None] - beams_deg).argmin(axis=1), minlength=len(beams_deg))
+    return np.abs(elevation[:, None] - beams_deg).argmin(axis=1)
+
+
+def per_beam(seen, beams_deg):
+    """Points of each beam of one scan."""
+    return np.bincount(beam_of(seen, beams_deg), minlength=len(beams_deg))
+
+
+def shot_noise(seen, beams_deg, road, least=8, most=15):
+    """What three neighbouring shots of one beam on the road are off a straight line, metres of range: |a - 2 b + c| / sqrt(6).
+
+    The standard deviation of one shot if it were alone in being wrong. `road`: the height of the road; on it is what is
+    within 0.3 m of it and `least` to `most` metres away.
+    """
+    r = np.linalg.norm(seen, axis=1)
+    order = np.argsort(beam_of(seen, beams_deg), kind="stable")  # shots of one beam, as they were fired
+    beam = beam_of(seen, beams_deg)[order]
+    azimuth = np.degrees(np.arctan2(seen[order, 1], seen[order, 0]))
+    on_road = ((np.abs(seen[:, 2] - road) < 0.3) & (r > least) & (r < most))[order]
+    r = r[order]
+    step = np.abs(np.mod(np.diff(azimuth) + 180, 360) - 180)
+    joined = (np.diff(beam) == 0) & (step < 0.45) & (np.abs(np.diff(r)) < 0.5) & on_road[1:] & on_road[:-1]
+    return (np.abs(r[:-2] - 2 * r[1:-1] + r[2:]) / np.sqrt(6))[joined[1:] & joined[:-1]]
 
 
 def thinned(points, size):
@@ -185,6 +212,8 @@ def submaps(drive, length_m=50.0):
         return []
     out, begin, path = [], 0, 0.0
     for k in range(1, len(drive.scans)):
+        if k == begin:
+            continue
         path += np.linalg.norm(drive.poses[k][:, 3] - drive.poses[k - 1][:, 3])
         if path < length_m - 1.5:  # the spacing of the scans
             continue
@@ -214,6 +243,7 @@ def measure(drives, beams_deg):
         "range": np.concatenate(ranges),
         "height": np.concatenate(heights),
         "planarity": np.concatenate([planarity(s) for s in some]),
+        "shot noise": np.concatenate([shot_noise(s, beams_deg, ground(s)) for s in seen]),
         "residual": np.concatenate([e for e, _ in pairs]),
         "share of points with a plane in the next scan": np.concatenate([s for _, s in pairs]),
     }
@@ -233,6 +263,7 @@ HISTOGRAMS = {  # name, edges
     "range": ("range, m", np.arange(0, 100.1, 2.0)),
     "height": ("height above the road, m", np.arange(-1, 12.1, 0.25)),
     "planarity": ("RMS distance to the plane of a 1 m voxel, m", np.arange(0, 0.201, 0.005)),
+    "shot noise": ("noise of one shot on the road, 8 to 15 m away, m", np.arange(0, 0.151, 0.005)),
     "residual": ("distance to the planes of the scan before, m", np.arange(0, 0.201, 0.005)),
 }
 SINGLES = ["points per scan", "occupied 0.5 m voxels of a scan", "occupied 0.5 m voxels of a 50 m submap",
