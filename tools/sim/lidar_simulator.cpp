@@ -46,6 +46,10 @@ LidarSimulator::LidarSimulator(const RayCaster& caster, const VehicleMotion& mot
       seed_(seed) {
   for (const Beam& beam : model_.beams) {
     elevations_.push_back({std::sin(beam.elevation_deg * kRadPerDeg), std::cos(beam.elevation_deg * kRadPerDeg)});
+    const std::uint64_t bits = Hash(seed_, errors_.size(), 0xBEA7);
+    // The sensor sends whole steps.
+    const double steps = std::round(model_.beam_range_sigma_m * Gaussian(bits) / model_.range_step_m);
+    errors_.push_back({steps * model_.range_step_m, model_.beam_elevation_sigma_rad * Gaussian(Mix(bits))});
   }
 }
 
@@ -89,7 +93,8 @@ void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
       // A beam is a few centimetres wide, and somewhere in it is what answers.
       const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray));
       const auto aside = static_cast<float>(model_.divergence_rad * Gaussian(bits));
-      const auto above = static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)));
+      const auto above =
+          static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)) + errors_[first + ray].elevation_rad);
       const Vector3f lit = (along + aside * right + above * up).normalized();
       const float share = static_cast<float>(beam.fires_ns) / static_cast<float>(model_.column_ns);
       const Vector3f direction = pose.rotation_begin * lit + share * (pose.rotation_change * lit);
@@ -107,12 +112,13 @@ void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
     caster_.Cast(rays, model_.max_range_m, moving);
     for (std::size_t ray = 0; ray < RayPacket::kRays; ++ray) {
       const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray) + 1);
-      const LidarReturn measured =
+      LidarReturn measured =
           rays.distance_m[ray] > 0
               ? receiver_.Detect(rays.surface[ray], rays.patch[ray], static_cast<double>(rays.distance_m[ray]),
                                  static_cast<double>(rays.cos_incidence[ray]), bits)
               : receiver_.DetectAir(static_cast<double>(model_.max_range_m), bits);
       if (measured.distance_m <= 0) continue;
+      measured.distance_m += static_cast<float>(errors_[first + ray].range_m);
       visit(first + ray, measured, Vector3f(rays.origin_x[ray], rays.origin_y[ray], rays.origin_z[ray]), nominal[ray]);
     }
   }

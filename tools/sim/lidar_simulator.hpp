@@ -57,6 +57,11 @@ class LidarSimulator {
     double cosine;
   };
   std::vector<Elevation> elevations_;
+  struct BeamError {
+    double range_m;
+    double elevation_rad;
+  };
+  std::vector<BeamError> errors_;
   mutable std::int64_t window_ = -1;
   mutable std::unique_ptr<RayScene> moving_;
 };

@@ -3,7 +3,7 @@
 """Compares simulated scans with real ones of the same kind of sensor: numbers as a table, histograms as SVG and PNG.
 
     tools/sim/realism.py --lidar hdl64e --real DRIVE --simulated OUT/vehicle_1 ... -o hdl64e
-    tools/sim/realism.py --lidar vlp16 --real scan.pcd --simulated OUT/vehicle_1 -o vlp16
+    tools/sim/realism.py --lidar vlp16 --indoors --real scan.pcd --simulated OUT/vehicle_1 -o vlp16
 
 A DRIVE is a folder with velodyne/*.bin and a poses.txt or poses_icp.txt of one row (a 3 x 4 pose) per scan, as KITTI odometry
 and `mapweld sim --layout kitti` have them; a single .bin or .pcd has no poses and is measured alone. Simulated clouds are
@@ -140,20 +140,23 @@ def per_beam(seen, beams_deg):
     return np.bincount(beam_of(seen, beams_deg), minlength=len(beams_deg))
 
 
-def shot_noise(seen, beams_deg, road, least=8, most=15):
-    """What three neighbouring shots of one beam on the road are off a straight line, metres of range: |a - 2 b + c| / sqrt(6).
+def shot_noise(seen, beams_deg, road, least, most):
+    """What three neighbouring shots of one beam are off a straight line, metres of range: |a - 2 b + c| / sqrt(6).
 
-    The standard deviation of one shot if it were alone in being wrong. `road`: the height of the road; on it is what is
-    within 0.3 m of it and `least` to `most` metres away.
+    A median of 0.67 s of it means that shots err by a standard deviation of s. Of shots `least` to `most` metres away, on the
+    road, that is within 0.3 m of the height `road`; None: on whatever changes by less than 0.15 m from shot to shot.
     """
     r = np.linalg.norm(seen, axis=1)
-    order = np.argsort(beam_of(seen, beams_deg), kind="stable")  # shots of one beam, as they were fired
-    beam = beam_of(seen, beams_deg)[order]
+    beam = beam_of(seen, beams_deg)
+    order = np.argsort(beam, kind="stable")  # shots of one beam, as they were fired
     azimuth = np.degrees(np.arctan2(seen[order, 1], seen[order, 0]))
-    on_road = ((np.abs(seen[:, 2] - road) < 0.3) & (r > least) & (r < most))[order]
-    r = r[order]
+    wanted = (r > least) & (r < most)
+    if road is not None:
+        wanted &= np.abs(seen[:, 2] - road) < 0.3
+    wanted, r = wanted[order], r[order]
     step = np.abs(np.mod(np.diff(azimuth) + 180, 360) - 180)
-    joined = (np.diff(beam) == 0) & (step < 0.45) & (np.abs(np.diff(r)) < 0.5) & on_road[1:] & on_road[:-1]
+    smooth = np.abs(np.diff(r)) < (0.15 if road is None else 0.5)
+    joined = (np.diff(beam[order]) == 0) & (step < 0.45) & smooth & wanted[1:] & wanted[:-1]
     return (np.abs(r[:-2] - 2 * r[1:-1] + r[2:]) / np.sqrt(6))[joined[1:] & joined[:-1]]
 
 
@@ -225,8 +228,9 @@ def submaps(drive, length_m=50.0):
     return out
 
 
-def measure(drives, beams_deg):
+def measure(drives, beams_deg, indoors=False):
     """All that is compared, of the drives together."""
+    where = (NEAR_M, 8) if indoors else (8, 15)
     scans = [s for d in drives for s in d.scans]
     seen = [s for d in drives for s in d.seen]
     heights = [s[:, 2] - ground(s) for s in scans]
@@ -243,7 +247,7 @@ def measure(drives, beams_deg):
         "range": np.concatenate(ranges),
         "height": np.concatenate(heights),
         "planarity": np.concatenate([planarity(s) for s in some]),
-        "shot noise": np.concatenate([shot_noise(s, beams_deg, ground(s)) for s in seen]),
+        "shot noise": np.concatenate([shot_noise(s, beams_deg, None if indoors else ground(s), *where) for s in seen]),
         "residual": np.concatenate([e for e, _ in pairs]),
         "share of points with a plane in the next scan": np.concatenate([s for _, s in pairs]),
     }
@@ -263,7 +267,7 @@ HISTOGRAMS = {  # name, edges
     "range": ("range, m", np.arange(0, 100.1, 2.0)),
     "height": ("height above the road, m", np.arange(-1, 12.1, 0.25)),
     "planarity": ("RMS distance to the plane of a 1 m voxel, m", np.arange(0, 0.201, 0.005)),
-    "shot noise": ("noise of one shot on the road, 8 to 15 m away, m", np.arange(0, 0.151, 0.005)),
+    "shot noise": ("noise of one shot, m", np.arange(0, 0.151, 0.005)),
     "residual": ("distance to the planes of the scan before, m", np.arange(0, 0.201, 0.005)),
 }
 SINGLES = ["points per scan", "occupied 0.5 m voxels of a scan", "occupied 0.5 m voxels of a 50 m submap",
@@ -291,14 +295,15 @@ def table(real, simulated):
 
 
 def plot(real, simulated, beams_deg, title, out):
+    """Writes `out`.svg and `out`.png."""
     import matplotlib
     matplotlib.use("Agg")
-    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "mapweld", "font.size": 9})
+    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "mapweld", "font.size": 9, "axes.titlesize": 9.5})
     import matplotlib.pyplot as plt
     panels = [k for k in HISTOGRAMS if len(real[k]) and len(simulated[k])]
     counts = [k for k in SINGLES[:3] if len(real[k]) and len(simulated[k])]
-    across = 3
-    figure, axes = plt.subplots(-(-(len(panels) + 2) // across), across, figsize=(12, 3.1 * -(-(len(panels) + 2) // across)))
+    rows, across = -(-(len(panels) + 2) // 3), 3
+    figure, axes = plt.subplots(rows, across, figsize=(11.5, 2.7 * rows + 0.3))
     axes = list(axes.flat)
     for key in panels:
         ax = axes.pop(0)
@@ -306,23 +311,23 @@ def plot(real, simulated, beams_deg, title, out):
         a, b = share(real[key], edges), share(simulated[key], edges)
         ax.stairs(a, edges, fill=True, color=REAL, label="real")
         ax.stairs(b, edges, color=SIMULATED, linewidth=1.6, label="simulated")
-        ax.set_title(f"{name}: {apart(a, b):.2f} apart")
+        ax.set_title(f"{name}: {apart(a, b):.2f} apart", loc="left")
         ax.set_xlim(edges[0], edges[-1])
-        ax.legend(frameon=False)
+    figure.axes[0].legend(frameon=False)
     ax = axes.pop(0)
     order = np.argsort(beams_deg)
-    ax.fill_between(beams_deg[order], real["per beam"][order], step="mid", color=REAL, label="real")
-    ax.step(beams_deg[order], simulated["per beam"][order], where="mid", color=SIMULATED, label="simulated")
-    ax.set_title("points per beam and scan, by elevation, degrees")
+    ax.fill_between(beams_deg[order], real["per beam"][order], step="mid", color=REAL)
+    ax.step(beams_deg[order], simulated["per beam"][order], where="mid", color=SIMULATED, linewidth=1.6)
+    ax.set_title("points per beam and scan, over its elevation in degrees", loc="left")
+    ax.set_xlim(beams_deg.min(), beams_deg.max())
     ax.set_ylim(0)
-    ax.legend(frameon=False, loc="lower right")
     ax = axes.pop(0)
     for i, key in enumerate(counts):
         for values, colour, dy in ((real[key], REAL, 0.15), (simulated[key], SIMULATED, -0.15)):
             ax.plot(values, np.full(len(values), -i + dy), ".", color=colour, alpha=0.4, markersize=5, markeredgewidth=0)
             ax.plot(np.median(values), -i + dy, "|", color=colour, markersize=16, markeredgewidth=2.5)
-        ax.text(0.02, -i + 0.32, key, transform=ax.get_yaxis_transform(), fontsize=8)
-    ax.set_title("counts: each scan or submap, and the median")
+        ax.text(0.02, -i + 0.32, key, transform=ax.get_yaxis_transform(), fontsize=8.5)
+    ax.set_title("each scan or submap, and their median", loc="left")
     ax.set_yticks([])
     ax.set_ylim(-len(counts) + 0.5, 0.6)
     ax.set_xscale("log")
@@ -330,10 +335,10 @@ def plot(real, simulated, beams_deg, title, out):
         rest.set_axis_off()
     for ax in figure.axes:
         ax.spines[["top", "right"]].set_visible(False)
-    figure.suptitle(title)
+    figure.suptitle(title, fontsize=11)
     figure.tight_layout()
     figure.savefig(f"{out}.svg", metadata={"Date": None})
-    figure.savefig(f"{out}.png", dpi=100, metadata={"Software": None})
+    figure.savefig(f"{out}.png", dpi=90, metadata={"Software": None})
 
 
 def main():
@@ -342,12 +347,14 @@ def main():
     parser.add_argument("--real", nargs="+", required=True, metavar="DRIVE")
     parser.add_argument("--simulated", nargs="+", required=True, metavar="DRIVE")
     parser.add_argument("--origin", nargs=3, type=float, default=(0.10, 0, 0.35), metavar=("X", "Y", "Z"))
+    parser.add_argument("--indoors", action="store_true",
+                        help="the real scans see no road: noise is that of whatever is smooth and within 8 m")
     parser.add_argument("--title", default="")
     parser.add_argument("-o", "--out", required=True, help="without its ending: .svg and .png")
     args = parser.parse_args()
     beams_deg = BEAMS_DEG[args.lidar]
-    real = measure([Drive(d) for d in args.real], beams_deg)
-    simulated = measure([Drive(d, np.array(args.origin)) for d in args.simulated], beams_deg)
+    real = measure([Drive(d) for d in args.real], beams_deg, args.indoors)
+    simulated = measure([Drive(d, np.array(args.origin)) for d in args.simulated], beams_deg, args.indoors)
     print(table(real, simulated))
     plot(real, simulated, beams_deg, args.title, args.out)
 

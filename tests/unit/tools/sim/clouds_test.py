@@ -74,7 +74,8 @@ class Realism(unittest.TestCase):
         r[5] += 0.06
         beam_deg = -11.0
         scan = at(-0.2 * np.arange(11), np.full(11, beam_deg), r)
-        noise = realism.shot_noise(scan, realism.BEAMS_DEG["vlp16"], road=10 * np.sin(np.radians(beam_deg)))
+        noise = realism.shot_noise(scan, realism.BEAMS_DEG["vlp16"], road=10 * np.sin(np.radians(beam_deg)),
+                                   least=8, most=15)
         np.testing.assert_allclose(noise * np.sqrt(6), [0, 0, 0, 0.06, 0.12, 0.06, 0, 0, 0], atol=1e-9)
 
     def test_a_turn_goes_clockwise(self):

@@ -120,6 +120,31 @@ TEST_F(Lidar, PutsThePointsOfEveryModelOntoTheWorld) {
   }
 }
 
+TEST_F(Lidar, KeepsTheErrorOfEachBeam) {
+  LidarModel right = LidarByName("hdl64e");
+  right.beam_elevation_sigma_rad = 0;
+  LidarModel wrong = right;
+  right.beam_range_sigma_m = 0;
+  const LidarSimulator one(caster_, motion_, nullptr, right, {}, kStart_ns, 7);
+  const LidarSimulator other(caster_, motion_, nullptr, wrong, {}, kStart_ns, 7);
+  std::vector<double> errors(right.beams.size(), 0);
+  for (std::int64_t c = 0; c < 40; ++c) {
+    std::vector<LidarReturn> a;
+    std::vector<LidarReturn> b;
+    one.Column(c, &a);
+    other.Column(c, &b);
+    for (std::size_t beam = 0; beam < a.size(); ++beam) {
+      if (a[beam].distance_m <= 0) continue;
+      const double error = static_cast<double>(b[beam].distance_m) - static_cast<double>(a[beam].distance_m);
+      if (errors[beam] == 0) errors[beam] = error;
+      EXPECT_NEAR(error, errors[beam], 1e-5);
+    }
+  }
+  double squares = 0;
+  for (const double error : errors) squares += error * error;
+  EXPECT_NEAR(std::sqrt(squares / 64), wrong.beam_range_sigma_m, 0.01);
+}
+
 TEST_F(Lidar, ShowsMovingThingsWhereTheyAreAtEachFiring) {
   const LanePath lane = LanePath::Beside({{0, 0}, {60, 0}});
   const Relief flat(0, 1);
