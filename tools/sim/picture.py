@@ -157,16 +157,16 @@ def sheet(drive, submaps, size, radius_m, turn_deg, scan=None):
     one = read_cloud(f"{drive}/velodyne/{number:06}.bin")
     submap = read_cloud(str(clouds[len(clouds) // 2]))
     near = radius_m * 0.55
-    ahead = -np.degrees(np.arctan2(*(read_poses(f"{drive}/poses.txt")[number][1::-1, 0]))) if turn_deg is None else turn_deg
-    origin = np.zeros(3)
     parts = [
-        ((0, 0), draw(world, (left, size[1]), radius_m, turn_deg=turn_deg, centre=path[number], path=path), "the drive"),
-        ((left + gap, 0), draw(one, (right, half), near, turn_deg=ahead, centre=origin, dot=2), "one turn of the LiDAR"),
-        ((left + gap, half + gap), draw(submap, (right, half), near, turn_deg=ahead), "one submap"),
+        ((0, 0), "the drive",
+         draw(world, (left, size[1]), radius_m, turn_deg=turn_deg, centre=path[number], path=path)),
+        ((left + gap, 0), "one turn of the LiDAR",
+         draw(one, (right, half), near, turn_deg=turn_deg, centre=np.zeros(3), dot=2)),
+        ((left + gap, half + gap), "one submap", draw(submap, (right, half), near, turn_deg=turn_deg)),
     ]
     whole = Image.new("RGB", size, (235, 235, 235))
     pen = ImageDraw.Draw(whole)
-    for at, image, caption in parts:
+    for at, caption, image in parts:
         whole.paste(Image.fromarray(image), at)
         pen.text((at[0] + 12, at[1] + 9), caption, fill=(225, 228, 235), font=ImageFont.truetype("DejaVuSans.ttf", 16))
     return np.asarray(whole)
@@ -181,7 +181,7 @@ def main():
     parser.add_argument("--radius", type=float, default=60, help="metres from the middle to the left edge")
     parser.add_argument("--tilt", type=float, default=48, help="degrees: 90 looks straight down")
     parser.add_argument("--turn", type=float, default=20, help="degrees about the vertical")
-    parser.add_argument("--size", default="1040x624")
+    parser.add_argument("--size", default="960x576")
     args = parser.parse_args()
     size = tuple(map(int, args.size.split("x")))
     if args.sheet:

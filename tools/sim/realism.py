@@ -266,9 +266,9 @@ def apart(a, b):
 HISTOGRAMS = {  # name, edges
     "range": ("range, m", np.arange(0, 100.1, 2.0)),
     "height": ("height above the road, m", np.arange(-1, 12.1, 0.25)),
-    "planarity": ("RMS distance to the plane of a 1 m voxel, m", np.arange(0, 0.201, 0.005)),
+    "planarity": ("off the plane of their 1 m voxel (RMS), m", np.arange(0, 0.201, 0.005)),
     "shot noise": ("noise of one shot, m", np.arange(0, 0.151, 0.005)),
-    "residual": ("distance to the planes of the scan before, m", np.arange(0, 0.201, 0.005)),
+    "residual": ("off the planes of the scan before, m", np.arange(0, 0.201, 0.005)),
 }
 SINGLES = ["points per scan", "occupied 0.5 m voxels of a scan", "occupied 0.5 m voxels of a 50 m submap",
            "share of points beyond 30 m", "share of points above 3 m", "share of points with a plane in the next scan"]
@@ -302,8 +302,9 @@ def plot(real, simulated, beams_deg, title, out):
     import matplotlib.pyplot as plt
     panels = [k for k in HISTOGRAMS if len(real[k]) and len(simulated[k])]
     counts = [k for k in SINGLES[:3] if len(real[k]) and len(simulated[k])]
-    rows, across = -(-(len(panels) + 2) // 3), 3
-    figure, axes = plt.subplots(rows, across, figsize=(11.5, 2.7 * rows + 0.3))
+    across = 3 if len(panels) < 5 else 4
+    rows = -(-(len(panels) + 2) // across)
+    figure, axes = plt.subplots(rows, across, figsize=(3.75 * across, 2.7 * rows + 0.3))
     axes = list(axes.flat)
     for key in panels:
         ax = axes.pop(0)
@@ -318,7 +319,7 @@ def plot(real, simulated, beams_deg, title, out):
     order = np.argsort(beams_deg)
     ax.fill_between(beams_deg[order], real["per beam"][order], step="mid", color=REAL)
     ax.step(beams_deg[order], simulated["per beam"][order], where="mid", color=SIMULATED, linewidth=1.6)
-    ax.set_title("points per beam and scan, over its elevation in degrees", loc="left")
+    ax.set_title("points per beam, over its elevation in degrees", loc="left")
     ax.set_xlim(beams_deg.min(), beams_deg.max())
     ax.set_ylim(0)
     ax = axes.pop(0)
