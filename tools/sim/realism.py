@@ -15,7 +15,7 @@ import pathlib
 
 import numpy as np
 
-from picture import read_cloud, read_poses
+from picture import read_cloud, read_poses, thinned
 
 TURN_S = 0.1
 NEAR_M, FAR_M = 2.5, 100.0  # nearer: the vehicle itself
@@ -158,12 +158,6 @@ def shot_noise(seen, beams_deg, road, least, most):
     smooth = np.abs(np.diff(r)) < (0.15 if road is None else 0.5)
     joined = (np.diff(beam[order]) == 0) & (step < 0.45) & smooth & wanted[1:] & wanted[:-1]
     return (np.abs(r[:-2] - 2 * r[1:-1] + r[2:]) / np.sqrt(6))[joined[1:] & joined[:-1]]
-
-
-def thinned(points, size):
-    """One point per voxel."""
-    _, first = np.unique(np.floor(points / size).astype(np.int64), axis=0, return_index=True)
-    return points[first]
 
 
 def residuals(fixed, moving, guess_r, guess_t, turns=12, within=40.0, reach=1.0):
