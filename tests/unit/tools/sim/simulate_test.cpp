@@ -139,6 +139,10 @@ TEST_F(Simulation, RefusesASensorThatItCannotBeBeforeAnyWork) {
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("known are vlp16, hdl32e"));
   options.lidar = "hdl64e";
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout kitti"));
+  options.lidar = "vlp16";
+  options.layout = Layout::kKitti;
+  options.dual_return = true;
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout wire"));
 }
 
 TEST_F(Simulation, ReplacesARecordingButNothingElse) {
