@@ -95,6 +95,7 @@ VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job
     spec.seed = seed;
     spec.lidar = lidar;
     spec.dual_return = options.dual_return;
+    spec.imu.vibration_mps2 = options.vibration_mps2;
     spec.weather = weather;
     summary.counts = WriteRecording(caster, motion, &traffic, spec, folder, report);
     return summary;
@@ -211,7 +212,9 @@ nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world,
           {"seed", seed},
           {"layout", LayoutName(options.layout)},
           {"lidar", fmt::format("{}, 600 rpm, {} return", lidar.name, options.dual_return ? "dual" : "strongest")},
-          {"imu", "Xsens MTi-600 CAN, 200 Hz"},
+          {"imu", "Xsens MTi-600 CAN, 200 Hz" + (options.vibration_mps2 > 0
+                                                     ? fmt::format(", trembling {} m/s^2", options.vibration_mps2)
+                                                     : std::string())},
           {"body_T_lidar", {{"t_m", {t.x(), t.y(), t.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
           {"vehicles", vehicles},
           {"overlaps_of_whole_routes", together}};
@@ -267,6 +270,9 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
   if (options.layout == Layout::kWire && VelodyneColumns(LidarByName(options.lidar)) == 0) {
     throw std::runtime_error(
         fmt::format("{} packets are not written; choose --layout kitti, or --lidar vlp16 or hdl32e", options.lidar));
+  }
+  if (options.vibration_mps2 < 0 || options.vibration_mps2 > 20) {
+    throw std::runtime_error(fmt::format("--vibration {} is not between 0 and 20 m/s^2", options.vibration_mps2));
   }
   if (options.dual_return && options.layout != Layout::kWire) {
     throw std::runtime_error("--dual-return is a mode of the packets; choose --layout wire");

@@ -143,6 +143,8 @@ TEST_F(Simulation, RefusesASensorThatItCannotBeBeforeAnyWork) {
   options.layout = Layout::kKitti;
   options.dual_return = true;
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout wire"));
+  options.vibration_mps2 = -1;
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("not between 0 and 20"));
 }
 
 TEST_F(Simulation, ReplacesARecordingButNothingElse) {
