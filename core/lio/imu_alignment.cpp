@@ -14,13 +14,25 @@ double Spread(const geom::Vec3d& sum, const geom::Vec3d& sum_sq, int n) {
 
 }  // namespace
 
+void ImuAlignment::Sums::Add(const geom::Vec3d& of_gyro, const geom::Vec3d& of_accel) {
+  ++n;
+  gyro += of_gyro;
+  accel += of_accel;
+}
+
 void ImuAlignment::Restart(const sensor::ImuSample& sample) {
   begin_ = sample.t;
-  n_ = 0;
-  gyro_sum_.setZero();
-  gyro_sum_sq_.setZero();
-  accel_sum_.setZero();
-  accel_sum_sq_.setZero();
+  mean_begin_ = sample.t;
+  rest_ = mean_ = means_ = squares_ = {};
+}
+
+void ImuAlignment::CloseMean(const sensor::ImuSample& sample) {
+  const geom::Vec3d gyro = mean_.gyro / mean_.n;
+  const geom::Vec3d accel = mean_.accel / mean_.n;
+  means_.Add(gyro, accel);
+  squares_.Add(gyro.cwiseAbs2(), accel.cwiseAbs2());
+  mean_ = {};
+  mean_begin_ = sample.t;
 }
 
 Status ImuAlignment::Add(const sensor::ImuSample& sample) {
@@ -29,20 +41,18 @@ Status ImuAlignment::Add(const sensor::ImuSample& sample) {
     all_ = 0;
     accel_sum_all_.setZero();
   }
-  if (n_ == 0 || sample.t < begin_) Restart(sample);
+  if (rest_.n == 0 || sample.t < begin_) Restart(sample);
   ++all_;
   accel_sum_all_ += sample.accel_body;
-  ++n_;
-  gyro_sum_ += sample.gyro_body;
-  gyro_sum_sq_ += sample.gyro_body.cwiseProduct(sample.gyro_body);
-  accel_sum_ += sample.accel_body;
-  accel_sum_sq_ += sample.accel_body.cwiseProduct(sample.accel_body);
+  rest_.Add(sample.gyro_body, sample.accel_body);
+  mean_.Add(sample.gyro_body, sample.accel_body);
+  if ((sample.t - mean_begin_).Seconds() >= config_.smoothing_s) CloseMean(sample);
 
-  const bool moving = n_ >= 20 && (Spread(gyro_sum_, gyro_sum_sq_, n_) > config_.max_gyro_spread ||
-                                   Spread(accel_sum_, accel_sum_sq_, n_) > config_.max_accel_spread);
+  const bool moving = means_.n >= 2 && (Spread(means_.gyro, squares_.gyro, means_.n) > config_.max_gyro_spread ||
+                                        Spread(means_.accel, squares_.accel, means_.n) > config_.max_accel_spread);
   if (moving || sample.clipped) Restart(sample);
-  if ((sample.t - begin_).Seconds() >= config_.duration_s && n_ >= 20) {
-    return Finish(accel_sum_ / n_, gyro_sum_ / n_, false);
+  if ((sample.t - begin_).Seconds() >= config_.duration_s && rest_.n >= 20) {
+    return Finish(rest_.accel / rest_.n, rest_.gyro / rest_.n, false);
   }
   if (moving && (sample.t - first_).Seconds() >= config_.patience_s) {
     return Finish(accel_sum_all_ / all_, geom::Vec3d::Zero(), true);
@@ -51,7 +61,7 @@ Status ImuAlignment::Add(const sensor::ImuSample& sample) {
 }
 
 Status ImuAlignment::Finish(const geom::Vec3d& mean_accel, const geom::Vec3d& gyro_bias, bool moving) {
-  n_ = 0;
+  rest_ = {};
   all_ = 0;
   alignment_.gravity_m_s2 = mean_accel.norm();
   const bool upright_enough = mean_accel.z() > 0.7 * alignment_.gravity_m_s2;

@@ -10,10 +10,13 @@
 namespace mapweld::lio {
 
 struct ImuAlignmentConfig {
-  double duration_s = 1.0;        // of rest
-  double max_gyro_spread = 0.03;  // rad/s, standard deviation per axis: above it the vehicle moves
+  double duration_s = 1.0;  // of rest
+  // Standard deviations per axis of means over `smoothing_s`: above them the vehicle moves. An idling engine shakes it
+  // at more than 10 Hz, driving does so more slowly.
+  double max_gyro_spread = 0.03;  // rad/s
   double max_accel_spread = 0.4;  // m/s^2
-  double patience_s = 5.0;        // without rest: then the start is in motion
+  double smoothing_s = 0.1;
+  double patience_s = 5.0;  // without rest: then the start is in motion
 };
 
 struct Alignment {
@@ -36,6 +39,7 @@ class ImuAlignment {
 
  private:
   void Restart(const sensor::ImuSample& sample);
+  void CloseMean(const sensor::ImuSample& sample);
   Status Finish(const geom::Vec3d& mean_accel, const geom::Vec3d& gyro_bias, bool moving);
 
   ImuAlignmentConfig config_;
@@ -44,11 +48,17 @@ class ImuAlignment {
   int all_ = 0;
   geom::Vec3d accel_sum_all_ = geom::Vec3d::Zero();
   TimeNs begin_;  // of what looks like rest so far
-  int n_ = 0;
-  geom::Vec3d gyro_sum_ = geom::Vec3d::Zero();
-  geom::Vec3d gyro_sum_sq_ = geom::Vec3d::Zero();
-  geom::Vec3d accel_sum_ = geom::Vec3d::Zero();
-  geom::Vec3d accel_sum_sq_ = geom::Vec3d::Zero();
+  struct Sums {
+    int n = 0;
+    geom::Vec3d gyro = geom::Vec3d::Zero();
+    geom::Vec3d accel = geom::Vec3d::Zero();
+    void Add(const geom::Vec3d& of_gyro, const geom::Vec3d& of_accel);
+  };
+  Sums rest_;  // samples
+  TimeNs mean_begin_;
+  Sums mean_;     // samples of the mean under way
+  Sums means_;    // means over smoothing_s
+  Sums squares_;  // their squares
 };
 
 }  // namespace mapweld::lio

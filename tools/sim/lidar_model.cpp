@@ -29,9 +29,13 @@ LidarModel Hdl32e() {
   return model;
 }
 
-// HDL-64E: an upper block from +2 degrees in thirds, a lower one from -8.83 in halves.
+// HDL-64E: an upper block from +2 degrees in thirds, a lower one from -8.83 in halves. Noise and errors of the beams as
+// in real scans of a road (docs/realism.md): it jitters far less than the light is wide, as the receiver averages over
+// it.
 LidarModel Hdl64e() {
-  LidarModel model{"hdl64e", {}, 48'000, 120, 0.02, 0.002, 4e-6, 0.7e-3};
+  LidarModel model{"hdl64e", {}, 48'000, 120, 0.009, 0.002, 4e-6, 0.07e-3};
+  model.beam_range_sigma_m = 0.03;
+  model.beam_elevation_sigma_rad = 1.2e-3;
   for (int i = 0; i < 64; ++i) {
     const double elevation_deg = i < 32 ? 2 - i / 3.0 : -8.83 - (i - 32) / 2.0;
     model.beams.push_back({elevation_deg, 0, i / 4 * 2880});

@@ -24,7 +24,10 @@ struct LidarModel {
   double range_sigma_m = 0;
   double range_step_m = 0;    // of the numbers that the sensor sends
   double half_signal = 0;     // reflectance * cos(incidence) / range^2 at which half of the shots come back
-  double divergence_rad = 0;  // standard deviation of the light across a beam
+  double divergence_rad = 0;  // standard deviation across a beam of where the return comes from
+  // Standard deviations of what calibration leaves of each beam's errors; they stay the same for a whole drive.
+  double beam_range_sigma_m = 0;
+  double beam_elevation_sigma_rad = 0;
   geom::Pose3 body_T_lidar{{0.10, 0, 0.35}, geom::Quatd::Identity()};
 };
 

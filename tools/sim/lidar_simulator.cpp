@@ -46,6 +46,10 @@ LidarSimulator::LidarSimulator(const RayCaster& caster, const VehicleMotion& mot
       seed_(seed) {
   for (const Beam& beam : model_.beams) {
     elevations_.push_back({std::sin(beam.elevation_deg * kRadPerDeg), std::cos(beam.elevation_deg * kRadPerDeg)});
+    const std::uint64_t bits = Hash(seed_, errors_.size(), 0xBEA7);
+    // The sensor sends whole steps.
+    const double steps = std::round(model_.beam_range_sigma_m * Gaussian(bits) / model_.range_step_m);
+    errors_.push_back({steps * model_.range_step_m, model_.beam_elevation_sigma_rad * Gaussian(Mix(bits))});
   }
 }
 
@@ -61,7 +65,8 @@ const RayScene* LidarSimulator::SceneOf(std::int64_t window) const {
 }
 
 template <class Visit>
-void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
+void LidarSimulator::Fire(std::int64_t index, std::uint64_t sample, const Visit& visit) const {
+  const std::uint64_t seed = seed_ + (sample << 32U);
   const std::int64_t begin_ns = index * model_.column_ns;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const MovingPose pose =
@@ -87,9 +92,10 @@ void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
       const Vector3f up(static_cast<float>(-sine * cos_azimuth), static_cast<float>(sine * sin_azimuth),
                         static_cast<float>(cosine));
       // A beam is a few centimetres wide, and somewhere in it is what answers.
-      const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray));
+      const std::uint64_t bits = Hash(seed, static_cast<std::uint64_t>(index), 2 * (first + ray));
       const auto aside = static_cast<float>(model_.divergence_rad * Gaussian(bits));
-      const auto above = static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)));
+      const auto above =
+          static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)) + errors_[first + ray].elevation_rad);
       const Vector3f lit = (along + aside * right + above * up).normalized();
       const float share = static_cast<float>(beam.fires_ns) / static_cast<float>(model_.column_ns);
       const Vector3f direction = pose.rotation_begin * lit + share * (pose.rotation_change * lit);
@@ -106,13 +112,14 @@ void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
     }
     caster_.Cast(rays, model_.max_range_m, moving);
     for (std::size_t ray = 0; ray < RayPacket::kRays; ++ray) {
-      const std::uint64_t bits = Hash(seed_, static_cast<std::uint64_t>(index), 2 * (first + ray) + 1);
-      const LidarReturn measured =
+      const std::uint64_t bits = Hash(seed, static_cast<std::uint64_t>(index), 2 * (first + ray) + 1);
+      LidarReturn measured =
           rays.distance_m[ray] > 0
               ? receiver_.Detect(rays.surface[ray], rays.patch[ray], static_cast<double>(rays.distance_m[ray]),
                                  static_cast<double>(rays.cos_incidence[ray]), bits)
               : receiver_.DetectAir(static_cast<double>(model_.max_range_m), bits);
       if (measured.distance_m <= 0) continue;
+      measured.distance_m += static_cast<float>(errors_[first + ray].range_m);
       visit(first + ray, measured, Vector3f(rays.origin_x[ray], rays.origin_y[ray], rays.origin_z[ray]), nominal[ray]);
     }
   }
@@ -120,13 +127,25 @@ void LidarSimulator::Fire(std::int64_t index, const Visit& visit) const {
 
 void LidarSimulator::Column(std::int64_t index, std::vector<LidarReturn>* returns) const {
   returns->assign(model_.beams.size(), {});
-  Fire(index, [&](std::size_t beam, const LidarReturn& measured, const Vector3f&, const Vector3f&) {
+  Fire(index, 0, [&](std::size_t beam, const LidarReturn& measured, const Vector3f&, const Vector3f&) {
     (*returns)[beam] = measured;
   });
 }
 
+void LidarSimulator::DualColumn(std::int64_t index, std::vector<LidarReturn>* nearer,
+                                std::vector<LidarReturn>* farther) const {
+  Column(index, nearer);
+  *farther = *nearer;
+  Fire(index, 1, [&](std::size_t beam, const LidarReturn& measured, const Vector3f&, const Vector3f&) {
+    const float first_m = (*nearer)[beam].distance_m;
+    const bool alone = first_m <= 0;
+    if (alone || measured.distance_m >= first_m + kReturnsApart_m) (*farther)[beam] = measured;
+    if (alone || measured.distance_m <= first_m - kReturnsApart_m) (*nearer)[beam] = measured;
+  });
+}
+
 void LidarSimulator::AppendPoints(std::int64_t index, std::vector<Vector3f>* world_points) const {
-  Fire(index, [&](std::size_t, const LidarReturn& measured, const Vector3f& origin, const Vector3f& direction) {
+  Fire(index, 0, [&](std::size_t, const LidarReturn& measured, const Vector3f& origin, const Vector3f& direction) {
     world_points->push_back(origin + measured.distance_m * direction);
   });
 }

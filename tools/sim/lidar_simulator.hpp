@@ -15,6 +15,7 @@
 namespace mapweld::sim {
 
 inline constexpr std::int64_t kRevolution_ns = 100'000'000;
+inline constexpr float kReturnsApart_m = 1;
 
 class LidarSimulator {
  public:
@@ -28,6 +29,9 @@ class LidarSimulator {
 
   // Column `index` begins index * column_ns after the start; one return per beam. Depends on nothing but the index.
   void Column(std::int64_t index, std::vector<LidarReturn>* returns) const;
+  // As a sensor in dual return mode sees it: the light of a beam on an edge comes back from two surfaces, at least
+  // kReturnsApart_m from each other. `nearer` are the same as `farther` where it comes back from one. Twice the work.
+  void DualColumn(std::int64_t index, std::vector<LidarReturn>* nearer, std::vector<LidarReturn>* farther) const;
   // The returns of the same column as points: what a perfect odometry would make of it.
   void AppendPoints(std::int64_t index, std::vector<Eigen::Vector3f>* world_points) const;
   // Sensor time of a column's first beam, and where the sensor looks then: degrees from forward, clockwise.
@@ -39,9 +43,10 @@ class LidarSimulator {
   }
 
  private:
-  // Fires all beams of one column: visit(beam, return, origin, direction) for those that came back.
+  // Fires all beams of one column: visit(beam, return, origin, direction) for those that came back. Another `sample`
+  // looks in another direction within each beam, with other noise.
   template <class Visit>
-  void Fire(std::int64_t index, const Visit& visit) const;
+  void Fire(std::int64_t index, std::uint64_t sample, const Visit& visit) const;
   // What moves in one window of time; kept until another is asked for.
   const RayScene* SceneOf(std::int64_t window) const;
 
@@ -57,6 +62,11 @@ class LidarSimulator {
     double cosine;
   };
   std::vector<Elevation> elevations_;
+  struct BeamError {
+    double range_m;
+    double elevation_rad;
+  };
+  std::vector<BeamError> errors_;
   mutable std::int64_t window_ = -1;
   mutable std::unique_ptr<RayScene> moving_;
 };

@@ -21,11 +21,11 @@ void WriteLidar(const RayCaster& caster, const VehicleMotion& motion, const Traf
                 const std::filesystem::path& file, const std::function<void(double)>& progress, DriveCounts& counts) {
   const LidarSimulator lidar(caster, motion, traffic, spec.lidar, spec.weather, spec.start_past_hour_ns, spec.seed);
   PcapWriter pcap(file);
-  const std::int64_t period_ns = VelodyneColumns(spec.lidar) * spec.lidar.column_ns;
+  const std::int64_t period_ns = VelodyneColumns(spec.lidar, spec.dual_return) * spec.lidar.column_ns;
   const std::int64_t packets = ToNs(spec.duration_s) / period_ns;
   constexpr std::int64_t kPerReport = 256;
   for (std::int64_t i = 0; i < packets; ++i) {
-    const VelodynePacket packet = FireVelodynePacket(lidar, i);
+    const VelodynePacket packet = FireVelodynePacket(lidar, i, spec.dual_return);
     for (const auto& block : packet.returns) {
       for (const VelodyneReturn& r : block) counts.returns += r.distance_2mm != 0 ? 1 : 0;
     }
@@ -34,6 +34,7 @@ void WriteLidar(const RayCaster& caster, const VehicleMotion& motion, const Traf
   }
   pcap.Close();
   counts.packets = packets;
+  // In dual return mode two rays look for the two returns.
   counts.rays = packets * static_cast<std::int64_t>(VelodynePacket::kBlocks * VelodynePacket::kReturnsPerBlock);
 }
 

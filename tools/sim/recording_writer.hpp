@@ -20,6 +20,7 @@ struct DriveSpec {
   double duration_s = 0;  // not beyond the motion's own duration
   std::uint64_t seed = 0;
   LidarModel lidar = LidarByName("vlp16");  // one with VelodyneColumns
+  bool dual_return = false;
   Weather weather;
   ImuModel imu;
 };

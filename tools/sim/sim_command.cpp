@@ -116,6 +116,10 @@ void AddSimCommand(CLI::App& app) {
                    "published (LCM logs), 50 times faster. kitti, mulran, gprs: clouds and true poses")
       ->transform(CLI::CheckedTransformer(layouts, CLI::ignore_case));
   command->add_option("--lidar", options->lidar, "vlp16, hdl32e, hdl64e, os1-64 or 128")->capture_default_str();
+  command->add_flag("--dual-return", options->dual_return,
+                    "Layout wire: packets with the last and the strongest return");
+  command->add_option("--vibration", options->vibration_mps2,
+                      "Layout wire: root mean square of the IMU's trembling along each axis, m/s^2");
   command->add_option("-o,--out", options->out, "Folder for the recordings")->required();
   command->add_option("--vehicles", options->vehicles, "Only these vehicles, for example 1,2")->delimiter(',');
   command->add_option("--seed", options->seed, "Seed of all noise (default: the scenario's)");

@@ -94,6 +94,8 @@ VehicleSummary Drive(const SimWorld& world, const LanePath& lane, const Job& job
     spec.duration_s = summary.duration_s;
     spec.seed = seed;
     spec.lidar = lidar;
+    spec.dual_return = options.dual_return;
+    spec.imu.vibration_mps2 = options.vibration_mps2;
     spec.weather = weather;
     summary.counts = WriteRecording(caster, motion, &traffic, spec, folder, report);
     return summary;
@@ -209,8 +211,10 @@ nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world,
           {"origin_lat_lon", {scenario.origin.lat_deg, scenario.origin.lon_deg}},
           {"seed", seed},
           {"layout", LayoutName(options.layout)},
-          {"lidar", lidar.name + ", 600 rpm, strongest return"},
-          {"imu", "Xsens MTi-600 CAN, 200 Hz"},
+          {"lidar", fmt::format("{}, 600 rpm, {} return", lidar.name, options.dual_return ? "dual" : "strongest")},
+          {"imu", "Xsens MTi-600 CAN, 200 Hz" + (options.vibration_mps2 > 0
+                                                     ? fmt::format(", trembling {} m/s^2", options.vibration_mps2)
+                                                     : std::string())},
           {"body_T_lidar", {{"t_m", {t.x(), t.y(), t.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
           {"vehicles", vehicles},
           {"overlaps_of_whole_routes", together}};
@@ -230,7 +234,7 @@ void CheckDiskSpace(const std::filesystem::path& folder, const std::vector<LaneP
   double bytes_per_m = 0;
   switch (options.layout) {
     case Layout::kWire:
-      bytes_per_m = 10 * shots * 3.3 / 8;
+      bytes_per_m = 10 * shots * 3.3 / 8 * (options.dual_return ? 2 : 1);
       break;
     case Layout::kSubmaps:
       bytes_per_m = 70'000 / 5.0;
@@ -266,6 +270,12 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
   if (options.layout == Layout::kWire && VelodyneColumns(LidarByName(options.lidar)) == 0) {
     throw std::runtime_error(
         fmt::format("{} packets are not written; choose --layout kitti, or --lidar vlp16 or hdl32e", options.lidar));
+  }
+  if (options.vibration_mps2 < 0 || options.vibration_mps2 > 20) {
+    throw std::runtime_error(fmt::format("--vibration {} is not between 0 and 20 m/s^2", options.vibration_mps2));
+  }
+  if (options.dual_return && options.layout != Layout::kWire) {
+    throw std::runtime_error("--dual-return is a mode of the packets; choose --layout wire");
   }
   const Scenario scenario = ReadScenario(options.scenario);
   const std::uint64_t seed = options.seed.value_or(scenario.seed);

@@ -28,6 +28,8 @@ struct SimOptions {
   std::filesystem::path out;
   Layout layout = Layout::kWire;
   std::string lidar = "vlp16";        // see lidar_model.hpp
+  bool dual_return = false;           // of the packets, layout kWire
+  double vibration_mps2 = 0;          // of the IMU, layout kWire; see imu_noise.hpp
   std::vector<int> vehicles;          // empty: all
   std::optional<std::uint64_t> seed;  // else the scenario's
   std::optional<double> seconds;      // no drive longer than this

@@ -41,6 +41,21 @@ TEST(ImuAlignment, WaitsSomeSecondsForTheVehicleToStop) {
   EXPECT_FALSE(alignment.alignment().moving);
 }
 
+TEST(ImuAlignment, KnowsAnIdlingEngineFromDriving) {
+  ImuAlignment alignment;
+  Status status = Status::kNotReady;
+  int samples = 0;
+  for (; status == Status::kNotReady && samples < 3000; ++samples) {
+    const double shaking = std::sin(2 * 3.14159 * 27.0 * 0.005 * samples);
+    status = alignment.Add(At(samples, {0.04 * shaking, 0, 0.002}, {0, 1.0 * shaking, 9.81 + 2.0 * shaking}));
+  }
+  ASSERT_EQ(status, Status::kOk);
+  EXPECT_FALSE(alignment.alignment().moving);
+  EXPECT_LE(samples, 202) << "as fast as without the engine";
+  EXPECT_LT(alignment.alignment().local_R_body.angularDistance(geom::Quatd::Identity()), 5e-3);
+  EXPECT_NEAR(alignment.alignment().gyro_bias.z(), 0.002, 1e-9);
+}
+
 TEST(ImuAlignment, StartsInMotionWhenItNeverStops) {
   ImuAlignment alignment;
   Status status = Status::kNotReady;

@@ -47,6 +47,31 @@ TEST(Candump, WritesSecondsWithSixDecimals) {
   EXPECT_EQ(CandumpLine(1'436'509'052'249'713'000, frame), "(1436509052.249713) can0 032#AB01\n");
 }
 
+TEST(ImuNoise, TremblesAsMuchAsAsked) {
+  const ImuModel still;
+  ImuModel trembling;
+  trembling.vibration_mps2 = 1.5;
+  constexpr std::uint64_t kSamples = 20000;
+  geom::Vec3d accel = geom::Vec3d::Zero();
+  geom::Vec3d gyro = geom::Vec3d::Zero();
+  geom::Vec3d sum = geom::Vec3d::Zero();
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    const double t = static_cast<double>(i) / still.rate_hz;
+    const ImuError a = DrawImuError(still, 5, i, t);
+    const ImuError b = DrawImuError(trembling, 5, i, t);
+    accel += (b.accel - a.accel).cwiseAbs2();
+    gyro += (b.gyro - a.gyro).cwiseAbs2();
+    sum += b.accel - a.accel;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(std::sqrt(accel[axis] / kSamples), 1.5, 0.03);
+    EXPECT_NEAR(sum[axis] / kSamples, 0, 0.01) << "trembling is no bias";
+    // 12 to 80 Hz, half a metre: 1.5 / 0.5 / (2 pi f).
+    EXPECT_GT(std::sqrt(gyro[axis] / kSamples), 3 / (2 * 3.15 * 80));
+    EXPECT_LT(std::sqrt(gyro[axis] / kSamples), 3 / (2 * 3.14 * 12));
+  }
+}
+
 TEST(ImuNoise, HasTheDensitiesOfTheDataSheet) {
   const ImuModel model;
   constexpr int kSamples = 20000;

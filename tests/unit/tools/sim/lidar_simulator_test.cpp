@@ -120,6 +120,65 @@ TEST_F(Lidar, PutsThePointsOfEveryModelOntoTheWorld) {
   }
 }
 
+TEST_F(Lidar, SendsTheLastAndTheStrongestReturnInPairsOfBlocks) {
+  TownMesh fence = Hall();  // of thin posts: beams on their edges see the wall behind too
+  for (int i = -30; i < 30; ++i) {
+    Of(fence, Surface::kPole).AddWalls({{12.0, i + 0.0}, {12.1, i + 0.0}, {12.1, i + 0.1}, {12.0, i + 0.1}}, 0, 6);
+  }
+  const RayCaster caster{{std::make_shared<RayScene>(fence)}};
+  const LidarSimulator lidar(caster, motion_, nullptr, model_, {}, kStart_ns, 77);
+  std::size_t both = 0;
+  std::size_t shots = 0;
+  for (std::int64_t i = 0; i < 150; ++i) {
+    const VelodynePacket single = FireVelodynePacket(lidar, i);
+    for (std::int64_t half = 0; half < 2; ++half) {
+      const VelodynePacket dual = FireVelodynePacket(lidar, 2 * i + half, true);
+      EXPECT_EQ(dual.mode, VelodynePacket::kDualReturn);
+      for (std::size_t block = 0; block < VelodynePacket::kBlocks; block += 2) {
+        const std::size_t same = static_cast<std::size_t>(half) * 6 + block / 2;
+        EXPECT_EQ(dual.azimuth_cdeg[block], dual.azimuth_cdeg[block + 1]);
+        EXPECT_EQ(dual.azimuth_cdeg[block], single.azimuth_cdeg[same]);
+        for (std::size_t channel = 0; channel < VelodynePacket::kReturnsPerBlock; ++channel) {
+          const int last = dual.returns[block][channel].distance_2mm;
+          const int nearer = dual.returns[block + 1][channel].distance_2mm;
+          const int alone = single.returns[same][channel].distance_2mm;
+          EXPECT_TRUE(alone == 0 || alone == last || alone == nearer) << "what the other mode sees is one of them";
+          EXPECT_TRUE(last == nearer || last >= nearer + 499) << "two returns are a metre apart";
+          both += last != nearer ? 1 : 0;
+          shots += last != 0 ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(both, 0U);
+  EXPECT_LT(both, shots / 20) << "edges are rare";
+}
+
+TEST_F(Lidar, KeepsTheErrorOfEachBeam) {
+  LidarModel right = LidarByName("hdl64e");
+  right.beam_elevation_sigma_rad = 0;
+  LidarModel wrong = right;
+  right.beam_range_sigma_m = 0;
+  const LidarSimulator one(caster_, motion_, nullptr, right, {}, kStart_ns, 7);
+  const LidarSimulator other(caster_, motion_, nullptr, wrong, {}, kStart_ns, 7);
+  std::vector<double> errors(right.beams.size(), 0);
+  for (std::int64_t c = 0; c < 40; ++c) {
+    std::vector<LidarReturn> a;
+    std::vector<LidarReturn> b;
+    one.Column(c, &a);
+    other.Column(c, &b);
+    for (std::size_t beam = 0; beam < a.size(); ++beam) {
+      if (a[beam].distance_m <= 0) continue;
+      const double error = static_cast<double>(b[beam].distance_m) - static_cast<double>(a[beam].distance_m);
+      if (errors[beam] == 0) errors[beam] = error;
+      EXPECT_NEAR(error, errors[beam], 1e-5);
+    }
+  }
+  double squares = 0;
+  for (const double error : errors) squares += error * error;
+  EXPECT_NEAR(std::sqrt(squares / 64), wrong.beam_range_sigma_m, 0.01);
+}
+
 TEST_F(Lidar, ShowsMovingThingsWhereTheyAreAtEachFiring) {
   const LanePath lane = LanePath::Beside({{0, 0}, {60, 0}});
   const Relief flat(0, 1);

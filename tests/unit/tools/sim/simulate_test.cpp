@@ -50,6 +50,27 @@ TEST_F(Simulation, GivesTheSameBytesWithAnyNumberOfThreadsAndInAnyCompany) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "alone/vehicle_1"));
 }
 
+TEST_F(Simulation, GivesTheSameBytesOfAWholeScenarioTwice) {
+  for (const Layout layout : {Layout::kSubmaps, Layout::kWire, Layout::kKitti}) {
+    SimOptions options = Options("first", 2);
+    options.scenario = ScenarioByName("plaza");
+    options.seconds = layout == Layout::kSubmaps ? 15 : 4;
+    options.layout = layout;
+    (void)Run(options);
+    options.out = folder_ / "second";
+    options.threads = 1;
+    (void)Run(options);
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "first")) {
+      if (!entry.is_regular_file()) continue;
+      const auto name = std::filesystem::relative(entry.path(), folder_ / "first");
+      EXPECT_TRUE(ReadText(entry.path()) == ReadText(folder_ / "second" / name)) << name;
+      ++files;
+    }
+    EXPECT_GT(files, 8) << "a file for each drive and the list of overlaps";
+  }
+}
+
 TEST_F(Simulation, ChangesTheNoiseWithTheSeedButNotTheStreets) {
   SimOptions options = Options("a", 0);
   options.vehicles = {1};
@@ -118,6 +139,12 @@ TEST_F(Simulation, RefusesASensorThatItCannotBeBeforeAnyWork) {
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("known are vlp16, hdl32e"));
   options.lidar = "hdl64e";
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout kitti"));
+  options.lidar = "vlp16";
+  options.layout = Layout::kKitti;
+  options.dual_return = true;
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout wire"));
+  options.vibration_mps2 = -1;
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("not between 0 and 20"));
 }
 
 TEST_F(Simulation, ReplacesARecordingButNothingElse) {

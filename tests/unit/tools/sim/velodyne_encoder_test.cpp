@@ -34,6 +34,8 @@ TEST(VelodyneEncoder, PutsEveryByteWhereTheManualSays) {
   EXPECT_EQ(bytes[1203], 4);
   EXPECT_EQ(bytes[1204], 0x37);
   EXPECT_EQ(bytes[1205], 0x22);
+  packet.mode = VelodynePacket::kDualReturn;
+  EXPECT_EQ(EncodeVelodyne(packet)[1204], 0x39);
   packet.model = VelodynePacket::kHdl32e;
   EXPECT_EQ(EncodeVelodyne(packet)[1205], 0x21);
 }
@@ -43,6 +45,7 @@ TEST(VelodyneEncoder, KeepsTheSensorsPace) {
   EXPECT_EQ(VelodyneColumns(vlp16) * vlp16.column_ns, 1'327'104);
   const LidarModel hdl32e = LidarByName("hdl32e");
   EXPECT_EQ(VelodyneColumns(hdl32e) * hdl32e.column_ns, 552'960);
+  EXPECT_EQ(VelodyneColumns(vlp16, true) * vlp16.column_ns, 663'552) << "twice as many packets";
   EXPECT_EQ(VelodyneColumns(LidarByName("hdl64e")), 0) << "no packets of this one";
 }
 
