@@ -153,7 +153,7 @@ std::vector<Result> MpiCrew::DoAll(const char* stage, int count, const merge::Jo
 Bytes MpiCrew::Lead(const char* stage, int count, const BytesJob& job) {
   JobBoard board(count);
   std::mutex mutex;  // of the board
-  std::thread own([&] {
+  std::jthread own([&] {
     for (;;) {
       std::optional<int> next;
       {
