@@ -44,6 +44,17 @@ def process_of_rank(launcher, rank):
     sys.exit(f"ranks: rank {rank} did not start")
 
 
+def mpi_works():
+    """Can this machine start two processes under MPI at all? Some sandboxes cannot."""
+    try:
+        return subprocess.run([MPIRUN, "-n", "2", "true"], env=ENVIRONMENT, capture_output=True, timeout=60).returncode == 0
+    except subprocess.TimeoutExpired:
+        return False
+
+
+if not mpi_works():
+    print("SKIPPED: mpirun cannot start two processes on this machine, so mapweld-ranks was not tested")
+    sys.exit(77)
 shutil.rmtree(WORK, ignore_errors=True)
 write_street(WORK)
 subprocess.run([MAPWELD, "merge", *(str(WORK / d) for d in "abc"), "-o", str(WORK / "alone")], check=True, capture_output=True)
