@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 
 #include "tools/merge/cycle_check.hpp"
 #include "tools/merge/difference.hpp"
 #include "tools/merge/grouping.hpp"
+#include "tools/merge/parallel.hpp"
 
 namespace mapweld::merge {
 namespace {
@@ -67,13 +70,14 @@ class Merge {
     std::vector<DrivePlaces> places;
     for (const Drive& drive : drives_) places.push_back(CollectPlaces(drive));
     const int n = static_cast<int>(drives_.size());
+    FindKnownPairs();
     const auto associations = crew_->Do("association", n, [&](int a) {
       std::vector<Association> with_later;
       for (int b = a + 1; b < n; ++b) {
-        const bool is_known = cache_ != nullptr && cache_->FindPair(drives_, a, b, &submaps_).has_value();
-        with_later.push_back(is_known ? Association{}
-                                      : Associate(places[static_cast<std::size_t>(a)],
-                                                  places[static_cast<std::size_t>(b)], config_.association));
+        with_later.push_back(known_.contains({a, b})
+                                 ? Association{}
+                                 : Associate(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)],
+                                             config_.association));
       }
       return with_later;
     });
@@ -85,14 +89,28 @@ class Merge {
     }
   }
 
+  // What the cache still vouches for. To ask it means to look for every submap of the pair: once.
+  void FindKnownPairs() {
+    if (cache_ == nullptr) return;
+    const int n = static_cast<int>(drives_.size());
+    std::mutex mutex;
+    ParallelFor(n, config_.threads, [&](int a) {
+      for (int b = a + 1; b < n; ++b) {
+        std::optional<PairOutcome> known = cache_->FindPair(drives_, a, b, &submaps_);
+        if (!known.has_value()) continue;
+        const std::lock_guard lock(mutex);
+        known_.emplace(std::pair(a, b), std::move(*known));
+      }
+    });
+  }
+
   // Zones and registration, of pairs with matches.
   void SearchPairs() {
     std::vector<PairOutcome> outcomes = crew_->Do("pairs", static_cast<int>(pairs_.size()), [&](int i) -> PairOutcome {
       const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      std::optional<PairOutcome> known;
-      if (cache_ != nullptr) known = cache_->FindPair(drives_, pair.a, pair.b, &submaps_);
-      return known.has_value() ? std::move(*known)
-                               : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
+      const auto known = known_.find({pair.a, pair.b});
+      return known != known_.end() ? known->second
+                                   : SearchPair(drives_, pair.a, pair.b, pair.association, &submaps_, config_);
     });
     for (PairOutcome& outcome : outcomes) {
       if (cache_ != nullptr) cache_->StorePair(drives_, outcome);
@@ -207,7 +225,8 @@ class Merge {
   Crew* crew_;
   MergeCache* cache_;
   MergeResult out_;
-  std::vector<Pair> pairs_;  // that are worth a look
+  std::map<std::pair<int, int>, PairOutcome> known_;  // from the last merge
+  std::vector<Pair> pairs_;                           // that are worth a look
   std::set<SubmapKey> missing_;
 };
 
