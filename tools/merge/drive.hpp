@@ -47,6 +47,8 @@ class SubmapSource {
  public:
   virtual ~SubmapSource() = default;
   virtual std::shared_ptr<const SubmapCloud> Find(SubmapKey key) = 0;
+  // Whether Find has it. A source that need not decode a cloud to know should say so itself.
+  virtual bool Has(SubmapKey key) { return Find(key) != nullptr; }
 };
 
 // For sources that keep their clouds anyway, longer than anyone asks for them.
@@ -58,11 +60,12 @@ inline std::shared_ptr<const SubmapCloud> Kept(const SubmapCloud* cloud) {
 class ThinnedSubmaps final : public SubmapSource {
  public:
   ThinnedSubmaps(SubmapSource* all, int step) : all_(all), step_(step) {}
-  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override {
-    return key.keyframe % step_ == 0 ? all_->Find(key) : nullptr;
-  }
+  std::shared_ptr<const SubmapCloud> Find(SubmapKey key) override { return IsKept(key) ? all_->Find(key) : nullptr; }
+  bool Has(SubmapKey key) override { return IsKept(key) && all_->Has(key); }
 
  private:
+  [[nodiscard]] bool IsKept(SubmapKey key) const { return key.keyframe % step_ == 0; }
+
   SubmapSource* all_;
   int step_;
 };

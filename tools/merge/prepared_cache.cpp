@@ -27,7 +27,7 @@ std::shared_ptr<const PreparedSubmap> PreparedCache::Get(SubmapKey key) {
 }
 
 bool PreparedCache::Has(SubmapKey key) {
-  return source_->Find(key) != nullptr;
+  return source_->Has(key);
 }
 
 }  // namespace mapweld::merge

@@ -179,7 +179,7 @@ AgentLogCounts WriteAgentLog(const RayCaster& caster, const VehicleMotion& motio
     now = {spec.start_past_hour_ns + i * kRevolution_ns};
     const geom::Pose3 odom_T_body = odometry.Next(world_T_body);
     points.clear();
-    const std::int64_t first = i * kRevolution_ns / spec.lidar.column_ns;
+    const std::int64_t first = i * kRevolution_ns * 1000 / spec.lidar.column_ps;
     for (std::int64_t c = first; c < first + lidar.ColumnsPerRevolution(); ++c) lidar.AppendPoints(c, &points);
     const geom::Pose3 odom_T_world = odom_T_body * world_T_body.Inverse();
     for (Eigen::Vector3f& p : points) p = (odom_T_world * geom::Vec3d(p.cast<double>())).cast<float>();

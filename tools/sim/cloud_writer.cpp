@@ -195,7 +195,7 @@ std::int64_t WriteClouds(const RayCaster& caster, const VehicleMotion& motion, c
     scan.past_hour_ns = spec.start_past_hour_ns + i * kRevolution_ns;
     scan.world_T_body = world_T_body;
     scan.world_points.clear();
-    const std::int64_t first = i * kRevolution_ns / spec.lidar.column_ns;
+    const std::int64_t first = i * kRevolution_ns * 1000 / spec.lidar.column_ps;
     for (std::int64_t c = first; c < first + lidar.ColumnsPerRevolution(); ++c)
       lidar.AppendPoints(c, &scan.world_points);
     layout->Add(scan);

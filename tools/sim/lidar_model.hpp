@@ -19,7 +19,7 @@ struct Beam {
 struct LidarModel {
   std::string name;
   std::vector<Beam> beams;     // in the order of the sensor's numbering; a multiple of 16
-  std::int64_t column_ns = 0;  // from one firing of all beams to the next
+  std::int64_t column_ps = 0;  // from one firing of all beams to the next
   float max_range_m = 0;
   double range_sigma_m = 0;
   double range_step_m = 0;    // of the numbers that the sensor sends
@@ -29,6 +29,9 @@ struct LidarModel {
   double beam_range_sigma_m = 0;
   double beam_elevation_sigma_rad = 0;
   geom::Pose3 body_T_lidar{{0.10, 0, 0.35}, geom::Quatd::Identity()};
+
+  // When column `index` begins, after column 0.
+  [[nodiscard]] std::int64_t ColumnStart_ns(std::int64_t index) const { return index * column_ps / 1000; }
 };
 
 // "vlp16", "hdl32e", "hdl64e", "os1-64", "128": angles and timing of the manuals; the last is no product but what the

@@ -67,10 +67,10 @@ const RayScene* LidarSimulator::SceneOf(std::int64_t window) const {
 template <class Visit>
 void LidarSimulator::Fire(std::int64_t index, std::uint64_t sample, const Visit& visit) const {
   const std::uint64_t seed = seed_ + (sample << 32U);
-  const std::int64_t begin_ns = index * model_.column_ns;
+  const std::int64_t begin_ns = model_.ColumnStart_ns(index);
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const MovingPose pose =
-      PoseOver(motion_, model_.body_T_lidar, seconds(begin_ns), seconds(begin_ns + model_.column_ns));
+      PoseOver(motion_, model_.body_T_lidar, seconds(begin_ns), seconds(model_.ColumnStart_ns(index + 1)));
   const std::int64_t window = begin_ns / kTrafficWindow_ns;
   const RayScene* moving = SceneOf(window);
   const double column_rad = Azimuth_deg(index) * kRadPerDeg;
@@ -97,7 +97,8 @@ void LidarSimulator::Fire(std::int64_t index, std::uint64_t sample, const Visit&
       const auto above =
           static_cast<float>(model_.divergence_rad * Gaussian(Mix(bits)) + errors_[first + ray].elevation_rad);
       const Vector3f lit = (along + aside * right + above * up).normalized();
-      const float share = static_cast<float>(beam.fires_ns) / static_cast<float>(model_.column_ns);
+      const float share =
+          static_cast<float>(static_cast<double>(beam.fires_ns) * 1e3 / static_cast<double>(model_.column_ps));
       const Vector3f direction = pose.rotation_begin * lit + share * (pose.rotation_change * lit);
       nominal[ray] = pose.rotation_begin * along + share * (pose.rotation_change * along);
       const Vector3f origin = pose.position_begin + share * pose.position_change;

@@ -25,9 +25,10 @@ class LidarSimulator {
                  const Weather& weather, std::int64_t start_past_hour_ns, std::uint64_t seed);
 
   [[nodiscard]] const LidarModel& model() const { return model_; }
-  [[nodiscard]] std::int64_t ColumnsPerRevolution() const { return kRevolution_ns / model_.column_ns; }
+  [[nodiscard]] std::int64_t ColumnsPerRevolution() const { return kRevolution_ns * 1000 / model_.column_ps; }
 
-  // Column `index` begins index * column_ns after the start; one return per beam. Depends on nothing but the index.
+  // Column `index` begins model().ColumnStart_ns(index) after the start; one return per beam. Depends on nothing but
+  // the index.
   void Column(std::int64_t index, std::vector<LidarReturn>* returns) const;
   // As a sensor in dual return mode sees it: the light of a beam on an edge comes back from two surfaces, at least
   // kReturnsApart_m from each other. `nearer` are the same as `farther` where it comes back from one. Twice the work.
@@ -36,7 +37,7 @@ class LidarSimulator {
   void AppendPoints(std::int64_t index, std::vector<Eigen::Vector3f>* world_points) const;
   // Sensor time of a column's first beam, and where the sensor looks then: degrees from forward, clockwise.
   [[nodiscard]] std::int64_t PastHour_ns(std::int64_t index) const {
-    return start_past_hour_ns_ + index * model_.column_ns;
+    return start_past_hour_ns_ + model_.ColumnStart_ns(index);
   }
   [[nodiscard]] double Azimuth_deg(std::int64_t index) const {
     return 360.0 * static_cast<double>(PastHour_ns(index) % kRevolution_ns) / static_cast<double>(kRevolution_ns);

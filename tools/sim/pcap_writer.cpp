@@ -41,7 +41,7 @@ std::uint16_t IpChecksum(std::span<const std::uint8_t> header) {
 
 }  // namespace
 
-PcapWriter::PcapWriter(const std::filesystem::path& path) : file_(path) {
+PcapWriter::PcapWriter(const std::filesystem::path& path, std::uint16_t udp_port) : file_(path), udp_port_(udp_port) {
   std::array<std::uint8_t, 24> header{};
   ByteWriter w(header);
   w.Little(std::uint32_t{0xA1B23C4D});  // nanoseconds
@@ -65,8 +65,8 @@ void PcapWriter::Write(std::int64_t stamp_ns, std::span<const std::uint8_t> udp_
   w.Bytes(kSensorMac);
   w.Big(std::uint16_t{0x0800});  // IPv4
   w.Bytes(IpHeader(udp_payload.size(), IpChecksum(IpHeader(udp_payload.size(), 0))));
-  w.Big(kVelodynePort);
-  w.Big(kVelodynePort);
+  w.Big(udp_port_);
+  w.Big(udp_port_);
   w.Big(static_cast<std::uint16_t>(kUdpBytes + udp_payload.size()));
   w.Big(std::uint16_t{0});  // no checksum, as the sensor does
   file_.Write(header);

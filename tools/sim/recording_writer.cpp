@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "tools/sim/candump.hpp"
+#include "tools/sim/ouster_encoder.hpp"
 #include "tools/sim/output_file.hpp"
 #include "tools/sim/pcap_writer.hpp"
 #include "tools/sim/velodyne_encoder.hpp"
@@ -17,25 +20,47 @@ std::int64_t ToNs(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
+// One packet of the sensor's own format: its bytes, and how many of its beams came back.
+using Packet = std::pair<std::vector<std::uint8_t>, std::int64_t>;
+
+Packet FirePacket(const LidarSimulator& lidar, std::int64_t index, bool dual) {
+  Packet packet;
+  auto& [bytes, returns] = packet;
+  if (IsOuster(lidar.model())) {
+    bytes = EncodeOuster(lidar, index, &returns);
+    return packet;
+  }
+  const VelodynePacket velodyne = FireVelodynePacket(lidar, index, dual);
+  for (const auto& block : velodyne.returns) {
+    for (const VelodyneReturn& r : block) returns += r.distance_2mm != 0 ? 1 : 0;
+  }
+  const auto encoded = EncodeVelodyne(velodyne);
+  bytes.assign(encoded.begin(), encoded.end());
+  return packet;
+}
+
 void WriteLidar(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic, const DriveSpec& spec,
-                const std::filesystem::path& file, const std::function<void(double)>& progress, DriveCounts& counts) {
+                const std::filesystem::path& dir, const std::function<void(double)>& progress, DriveCounts& counts) {
   const LidarSimulator lidar(caster, motion, traffic, spec.lidar, spec.weather, spec.start_past_hour_ns, spec.seed);
-  PcapWriter pcap(file);
-  const std::int64_t period_ns = VelodyneColumns(spec.lidar, spec.dual_return) * spec.lidar.column_ns;
-  const std::int64_t packets = ToNs(spec.duration_s) / period_ns;
+  PcapWriter pcap(dir / "lidar.pcap", IsOuster(spec.lidar) ? kOusterPort : kVelodynePort);
+  const std::int64_t columns = PacketColumns(spec.lidar, spec.dual_return);
+  const std::int64_t packets = ToNs(spec.duration_s) / spec.lidar.ColumnStart_ns(columns);
   constexpr std::int64_t kPerReport = 256;
   for (std::int64_t i = 0; i < packets; ++i) {
-    const VelodynePacket packet = FireVelodynePacket(lidar, i, spec.dual_return);
-    for (const auto& block : packet.returns) {
-      for (const VelodyneReturn& r : block) counts.returns += r.distance_2mm != 0 ? 1 : 0;
-    }
-    pcap.Write(spec.start_past_hour_ns + (i + 1) * period_ns, EncodeVelodyne(packet));
+    const auto& [bytes, returns] = FirePacket(lidar, i, spec.dual_return);
+    counts.returns += returns;
+    pcap.Write(lidar.PastHour_ns((i + 1) * columns), bytes);
     if (i % kPerReport == 0) progress(static_cast<double>(i) / static_cast<double>(packets));
   }
   pcap.Close();
   counts.packets = packets;
   // In dual return mode two rays look for the two returns.
-  counts.rays = packets * static_cast<std::int64_t>(VelodynePacket::kBlocks * VelodynePacket::kReturnsPerBlock);
+  counts.rays = packets * columns * static_cast<std::int64_t>(spec.lidar.beams.size()) * (spec.dual_return ? 2 : 1);
+  if (IsOuster(spec.lidar)) {
+    OutputFile metadata(dir / "lidar_metadata.json");
+    metadata.Write(OusterMetadataJson(spec.lidar));
+    metadata.Close();
+  }
 }
 
 void WriteImu(const VehicleMotion& motion, const DriveSpec& spec, const std::filesystem::path& file,
@@ -73,11 +98,16 @@ void WriteTruth(const VehicleMotion& motion, const DriveSpec& spec, const std::f
 
 }  // namespace
 
+std::int64_t PacketColumns(const LidarModel& model, bool dual) {
+  if (IsOuster(model)) return dual ? 0 : kOusterColumns;
+  return VelodyneColumns(model, dual);
+}
+
 DriveCounts WriteRecording(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
                            const DriveSpec& spec, const std::filesystem::path& dir,
                            const std::function<void(double)>& progress) {
   DriveCounts counts;
-  WriteLidar(caster, motion, traffic, spec, dir / "lidar.pcap", progress, counts);
+  WriteLidar(caster, motion, traffic, spec, dir, progress, counts);
   WriteImu(motion, spec, dir / "imu.candump", counts);
   WriteTruth(motion, spec, dir / "truth.tum");
   progress(1);

@@ -208,7 +208,9 @@ std::filesystem::path ScenarioByName(const std::string& name) {
   if (std::filesystem::exists(file)) return file;
   std::vector<std::string> known;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".json") known.push_back(entry.path().stem().string());
+    // A CityJSON town is NAME.city.json.
+    const std::filesystem::path file_name = entry.path().filename();
+    if (file_name.extension() == ".json" && !file_name.stem().has_extension()) known.push_back(file_name.stem());
   }
   std::sort(known.begin(), known.end());
   throw std::runtime_error(

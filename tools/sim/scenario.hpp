@@ -20,7 +20,8 @@ struct VehiclePlan {
   std::vector<GeoPoint> waypoints;  // along the streets, at least two
 };
 
-// A map, its path resolved: relative paths in the scenario count from its folder. Or a town that is invented.
+// A map, its path resolved: relative paths in the scenario count from its folder; CityJSON when it ends in .json, else
+// OpenStreetMap. Or a town that is invented.
 using TownSource = std::variant<std::filesystem::path, TownPlan>;
 
 // Real paths instead of routes: the town is invented around them.
@@ -32,7 +33,7 @@ struct PathPlan {
 struct Scenario {
   std::string name;
   TownSource town;
-  GeoPoint origin;  // of the world frame; for an invented town wherever waypoints put it
+  GeoPoint origin;  // of the world frame; for an invented town wherever waypoints put it; the middle of a CityJSON one
   std::uint64_t seed = 1;
   double relief_m = 0;  // standard deviation of the ground's height
   double traffic = 0;   // density, see traffic.hpp

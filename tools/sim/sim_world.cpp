@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "tools/sim/cityjson_town.hpp"
 #include "tools/sim/hash_noise.hpp"
 #include "tools/sim/osm_town.hpp"
 #include "tools/sim/parked_cars.hpp"
@@ -26,7 +27,8 @@ std::vector<SurveyedDrive> PlanRoutes(const Scenario& scenario, const Town& town
 
 Town MakeTown(const TownSource& source, const LocalFrame& frame) {
   if (const auto* plan = std::get_if<TownPlan>(&source)) return InventTown(*plan);
-  return ReadOsmTown(std::get<std::filesystem::path>(source), frame);
+  const auto& file = std::get<std::filesystem::path>(source);
+  return file.extension() == ".json" ? ReadCityJsonTown(file) : ReadOsmTown(file, frame);
 }
 
 Sight SightOfAll(const std::vector<SurveyedDrive>& routes, double reach_m = Sight::kReach_m) {

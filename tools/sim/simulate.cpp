@@ -18,7 +18,6 @@
 #include "tools/sim/overlap_truth.hpp"
 #include "tools/sim/sim_world.hpp"
 #include "tools/sim/staged_folder.hpp"
-#include "tools/sim/velodyne_encoder.hpp"
 
 namespace mapweld::sim {
 namespace {
@@ -166,7 +165,9 @@ std::string TownName(const TownSource& source) {
   if (const auto* plan = std::get_if<TownPlan>(&source)) {
     return fmt::format("invented: {}, {:.0f} m, seed {}", plan->style, plan->size_m, plan->seed);
   }
-  return std::get<std::filesystem::path>(source).filename().string() + ", © OpenStreetMap contributors, ODbL 1.0";
+  const auto& file = std::get<std::filesystem::path>(source);
+  const std::string name = file.filename().string();
+  return file.extension() == ".json" ? name : name + ", © OpenStreetMap contributors, ODbL 1.0";
 }
 
 nlohmann::ordered_json Describe(const Scenario& scenario, const SimWorld& world, const std::vector<Job>& jobs,
@@ -230,7 +231,8 @@ void CheckDiskSpace(const std::filesystem::path& folder, const std::vector<LaneP
     length_m += std::min(lanes[job.index].length_m(), longest_m);
   }
   const LidarModel lidar = LidarByName(options.lidar);
-  const double shots = static_cast<double>(lidar.beams.size()) * static_cast<double>(kRevolution_ns / lidar.column_ns);
+  const double shots =
+      static_cast<double>(lidar.beams.size()) * static_cast<double>(kRevolution_ns * 1000 / lidar.column_ps);
   double bytes_per_m = 0;
   switch (options.layout) {
     case Layout::kWire:
@@ -267,9 +269,11 @@ SimSummary Simulate(const SimOptions& options, const std::function<void(int, dou
   if (options.seconds && !(*options.seconds >= 0.1)) {
     throw std::runtime_error(fmt::format("--seconds {} is too short; the least is 0.1", *options.seconds));
   }
-  if (options.layout == Layout::kWire && VelodyneColumns(LidarByName(options.lidar)) == 0) {
-    throw std::runtime_error(
-        fmt::format("{} packets are not written; choose --layout kitti, or --lidar vlp16 or hdl32e", options.lidar));
+  const LidarModel lidar = LidarByName(options.lidar);
+  if (options.layout == Layout::kWire && PacketColumns(lidar, options.dual_return) == 0) {
+    throw std::runtime_error(fmt::format("{}{} packets are not written; choose --layout kitti, or --lidar vlp16{}",
+                                         options.dual_return ? "dual return " : "", options.lidar,
+                                         options.dual_return ? " or hdl32e" : ", hdl32e or os1-64"));
   }
   if (options.vibration_mps2 < 0 || options.vibration_mps2 > 20) {
     throw std::runtime_error(fmt::format("--vibration {} is not between 0 and 20 m/s^2", options.vibration_mps2));

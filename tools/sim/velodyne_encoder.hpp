@@ -41,6 +41,8 @@ std::int64_t VelodyneColumns(const LidarModel& model, bool dual = false);
 // Packet `index` holds the columns from index * VelodyneColumns on.
 VelodynePacket FireVelodynePacket(const LidarSimulator& lidar, std::int64_t index, bool dual = false);
 
+inline constexpr std::uint16_t kVelodynePort = 2368;
+
 std::array<std::uint8_t, VelodynePacket::kPayloadBytes> EncodeVelodyne(const VelodynePacket& packet);
 
 }  // namespace mapweld::sim

@@ -117,6 +117,13 @@ std::shared_ptr<const merge::SubmapCloud> CityStore::Submap(DriveKey drive, std:
   return cloud.has_value() ? std::make_shared<const merge::SubmapCloud>(std::move(*cloud)) : nullptr;
 }
 
+bool CityStore::HasSubmap(DriveKey drive, std::int32_t keyframe) {
+  const std::optional<Record> record = database_.Get(Table::kSubmaps, PairKey(drive, keyframe));
+  if (!record.has_value()) return false;
+  if (record->damaged) NoteDamage(Table::kSubmaps, record->key);
+  return !record->damaged;
+}
+
 std::optional<ScanTrajectory> CityStore::Trajectory(DriveKey drive) {
   return Read<ScanTrajectory>(Table::kTrajectories, drive);
 }
@@ -136,9 +143,11 @@ std::vector<std::string> CityStore::damage() {
 }
 
 std::shared_ptr<const merge::SubmapCloud> CitySubmaps::Find(merge::SubmapKey key) {
-  const auto drive = static_cast<std::size_t>(key.drive);
-  if (key.drive < 0 || drive >= keys_.size()) return nullptr;
-  return store_->Submap(keys_[drive], key.keyframe);
+  return IsDrive(key.drive) ? store_->Submap(keys_[static_cast<std::size_t>(key.drive)], key.keyframe) : nullptr;
+}
+
+bool CitySubmaps::Has(merge::SubmapKey key) {
+  return IsDrive(key.drive) && store_->HasSubmap(keys_[static_cast<std::size_t>(key.drive)], key.keyframe);
 }
 
 }  // namespace mapweld::store

@@ -51,6 +51,8 @@ class CityStore {
   [[nodiscard]] merge::Drive MergeDrive(const StoredDrive& drive);
   [[nodiscard]] std::vector<std::int32_t> SubmapKeyframes(DriveKey drive);
   [[nodiscard]] std::shared_ptr<const merge::SubmapCloud> Submap(DriveKey drive, std::int32_t keyframe);
+  // Whether its bytes are there and undamaged; decodes nothing.
+  [[nodiscard]] bool HasSubmap(DriveKey drive, std::int32_t keyframe);
   [[nodiscard]] std::optional<ScanTrajectory> Trajectory(DriveKey drive);
 
   // Damaged records that were met and left out, each named once, "keyframe 17 of agent_3".
@@ -89,8 +91,11 @@ class CitySubmaps final : public merge::SubmapSource {
   // keys: of the drives in the order given to the merge.
   CitySubmaps(CityStore* store, std::vector<DriveKey> keys) : store_(store), keys_(std::move(keys)) {}
   std::shared_ptr<const merge::SubmapCloud> Find(merge::SubmapKey key) override;
+  bool Has(merge::SubmapKey key) override;
 
  private:
+  [[nodiscard]] bool IsDrive(int drive) const { return drive >= 0 && static_cast<std::size_t>(drive) < keys_.size(); }
+
   CityStore* store_;
   std::vector<DriveKey> keys_;
 };

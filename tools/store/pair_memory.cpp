@@ -52,7 +52,7 @@ std::optional<PairRecord> PairMemory::Known(int a, int b, merge::SubmapSource* s
   if (pair->keyframes_a != Count(DriveAt(a)) || pair->keyframes_b != Count(DriveAt(b))) return std::nullopt;
   // Submaps never go, so only those that were missing need a look.
   for (const auto& [key, found] : pair->asked) {
-    if (!found && submaps->Find({key.drive == 0 ? a : b, key.keyframe}) != nullptr) return std::nullopt;
+    if (!found && submaps->Has({key.drive == 0 ? a : b, key.keyframe})) return std::nullopt;
   }
   return pair;
 }

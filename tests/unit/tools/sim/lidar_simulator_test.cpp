@@ -110,7 +110,7 @@ TEST_F(Lidar, PutsThePointsOfEveryModelOntoTheWorld) {
     const LidarModel model = LidarByName(name);
     const LidarSimulator lidar(caster_, motion_, nullptr, model, {}, kStart_ns, 7);
     std::vector<Eigen::Vector3f> points;
-    const std::int64_t first = 8'000'000'000 / model.column_ns;
+    const std::int64_t first = 8'000'000'000'000 / model.column_ps;
     for (std::int64_t c = first; c < first + lidar.ColumnsPerRevolution(); c += 16) lidar.AppendPoints(c, &points);
     const auto shots = static_cast<double>(model.beams.size()) * static_cast<double>(lidar.ColumnsPerRevolution()) / 16;
     EXPECT_GT(static_cast<double>(points.size()), 0.8 * shots) << name;

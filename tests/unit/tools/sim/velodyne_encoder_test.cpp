@@ -42,10 +42,10 @@ TEST(VelodyneEncoder, PutsEveryByteWhereTheManualSays) {
 
 TEST(VelodyneEncoder, KeepsTheSensorsPace) {
   const LidarModel vlp16 = LidarByName("vlp16");
-  EXPECT_EQ(VelodyneColumns(vlp16) * vlp16.column_ns, 1'327'104);
+  EXPECT_EQ(vlp16.ColumnStart_ns(VelodyneColumns(vlp16)), 1'327'104);
   const LidarModel hdl32e = LidarByName("hdl32e");
-  EXPECT_EQ(VelodyneColumns(hdl32e) * hdl32e.column_ns, 552'960);
-  EXPECT_EQ(VelodyneColumns(vlp16, true) * vlp16.column_ns, 663'552) << "twice as many packets";
+  EXPECT_EQ(hdl32e.ColumnStart_ns(VelodyneColumns(hdl32e)), 552'960);
+  EXPECT_EQ(vlp16.ColumnStart_ns(VelodyneColumns(vlp16, true)), 663'552) << "twice as many packets";
   EXPECT_EQ(VelodyneColumns(LidarByName("hdl64e")), 0) << "no packets of this one";
 }
 

@@ -18,7 +18,7 @@ std::uint8_t At(const std::string& bytes, std::size_t i) {
 TEST(PcapWriter, WritesADatagramWithAllItsHeaders) {
   const TestFolder folder;
   std::vector<std::uint8_t> payload(1206, 0x5A);
-  PcapWriter pcap(folder / "a.pcap");
+  PcapWriter pcap(folder / "a.pcap", 2368);
   pcap.Write(601'001'327'104, payload);
   pcap.Close();
   const std::string file = ReadText(folder / "a.pcap");
