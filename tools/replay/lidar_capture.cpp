@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <pcap/pcap.h>
 
-#include <array>
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/base/byte_io.hpp"
@@ -29,7 +29,8 @@ bool TakeLinkHeader(ByteReader& r, int link_type) {
 
 }  // namespace
 
-std::span<const std::uint8_t> UdpPayload(std::span<const std::uint8_t> frame, int link_type, std::uint16_t port) {
+std::span<const std::uint8_t> UdpPayload(std::span<const std::uint8_t> frame, int link_type,
+                                         std::span<const std::uint16_t> ports) {
   constexpr std::uint8_t kUdp = 17;
   constexpr std::uint16_t kFragmentBits = 0x3FFF;
   ByteReader r(frame);
@@ -46,7 +47,7 @@ std::span<const std::uint8_t> UdpPayload(std::span<const std::uint8_t> frame, in
   const auto to_port = r.Big<std::uint16_t>();
   const auto udp_bytes = r.Big<std::uint16_t>();
   r.Skip(2);  // checksum
-  if (to_port != port || udp_bytes < 8) return {};
+  if (std::find(ports.begin(), ports.end(), to_port) == ports.end() || udp_bytes < 8) return {};
   return r.Bytes(udp_bytes - 8U);
 }
 
@@ -54,7 +55,7 @@ void LidarCapture::Closer::operator()(pcap* file) const {
   pcap_close(file);
 }
 
-LidarCapture::LidarCapture(const std::filesystem::path& file, std::uint16_t port) : port_(port) {
+LidarCapture::LidarCapture(const std::filesystem::path& file) {
   std::array<char, PCAP_ERRBUF_SIZE> message{};
   file_.reset(pcap_open_offline_with_tstamp_precision(file.c_str(), PCAP_TSTAMP_PRECISION_NANO, message.data()));
   if (file_ == nullptr) {
@@ -76,7 +77,7 @@ bool LidarCapture::Next(Datagram* datagram) {
       truncated_ = outcome == PCAP_ERROR;
       return false;
     }
-    const auto payload = UdpPayload({bytes, header->caplen}, link_type_, port_);
+    const auto payload = UdpPayload({bytes, header->caplen}, link_type_, kLidarPorts);
     if (payload.empty()) continue;
     // With this precision the field called microseconds holds nanoseconds.
     *datagram = {std::int64_t{header->ts.tv_sec} * 1'000'000'000 + header->ts.tv_usec, payload};

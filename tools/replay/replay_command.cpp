@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 
 #include "tools/replay/replay_drive.hpp"
 
@@ -25,6 +26,10 @@ int RunReplay(const ReplayOptions& options) {
     if (recording.truncated()) {
       fmt::print(stderr, "mapweld replay: {} breaks off within a packet; everything before it was replayed\n",
                  (options.dir / "lidar.pcap").string());
+    }
+    if (s.packets + s.packets_lost == 0) {
+      throw std::runtime_error(fmt::format("{} holds no UDP datagram to port {}", (options.dir / "lidar.pcap").string(),
+                                           fmt::join(kLidarPorts, " or ")));
     }
     fmt::print(
         "agent {}: {} LiDAR packets, {} CAN frames, {} and {} lost, {:.1f} s of recording in {:.1f} s, {:.1f} times "

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 #include <vector>
 
 #include "tests/unit/tools/sim/test_folder.hpp"
@@ -35,7 +36,7 @@ Bytes Udp(std::uint8_t port_low = 0x40, std::uint8_t length = 11) {
   return Bytes{0x09, 0x40, 0x09, port_low, 0, length, 0, 0} + kPayload;
 }
 std::size_t PayloadBytes(const Bytes& frame, int link_type = kEthernet) {
-  return UdpPayload(frame, link_type, 2368).size();
+  return UdpPayload(frame, link_type, kLidarPorts).size();
 }
 
 TEST(UdpPayload, IsFoundBehindEveryLinkHeader) {
@@ -64,7 +65,7 @@ TEST(UdpPayload, LeavesOutEverythingElse) {
 
 TEST(LidarCapture, ReadsWhatTheSimulatorWrites) {
   const sim::TestFolder folder;
-  sim::PcapWriter pcap(folder / "a.pcap");
+  sim::PcapWriter pcap(folder / "a.pcap", kLidarPorts[0]);
   for (std::int64_t i = 0; i < 5; ++i) pcap.Write(601'000'000'123 + i, Bytes(1206, static_cast<std::uint8_t>(i)));
   pcap.Close();
   LidarCapture capture(folder / "a.pcap");
@@ -79,9 +80,22 @@ TEST(LidarCapture, ReadsWhatTheSimulatorWrites) {
   EXPECT_FALSE(capture.truncated());
 }
 
+TEST(LidarCapture, TakesDatagramsToThePortOfAnyLidarAndNoOthers) {
+  const sim::TestFolder folder;
+  const std::map<std::uint16_t, bool> wanted{{2368, true}, {7502, true}, {8308, false}};
+  for (const auto& [port, taken] : wanted) {
+    sim::PcapWriter pcap(folder / "a.pcap", port);
+    pcap.Write(1, Bytes(12'544, 7));
+    pcap.Close();
+    LidarCapture capture(folder / "a.pcap");
+    LidarCapture::Datagram datagram;
+    EXPECT_EQ(capture.Next(&datagram), taken) << port;
+  }
+}
+
 TEST(LidarCapture, EndsBeforeAPacketThatBreaksOff) {
   const sim::TestFolder folder;
-  sim::PcapWriter pcap(folder / "a.pcap");
+  sim::PcapWriter pcap(folder / "a.pcap", kLidarPorts[0]);
   for (int i = 0; i < 2; ++i) pcap.Write(i, Bytes(1206, 7));
   pcap.Close();
   const std::string whole = sim::ReadText(folder / "a.pcap");

@@ -16,7 +16,7 @@ namespace {
 class RecordingFolder : public testing::Test {
  protected:
   void Write(const std::vector<std::int64_t>& lidar_us, const std::vector<std::int64_t>& can_us) {
-    sim::PcapWriter pcap(folder_ / "lidar.pcap");
+    sim::PcapWriter pcap(folder_ / "lidar.pcap", kLidarPorts[0]);
     for (const auto t : lidar_us) pcap.Write(t * 1000, std::vector<std::uint8_t>(1206, static_cast<std::uint8_t>(t)));
     pcap.Close();
     std::string log;
