@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "tools/sim/hash_noise.hpp"
@@ -26,7 +27,8 @@ class StreetGrid {
         style_(style),
         columns_(std::max(3, static_cast<int>(plan.size_m / style.block_x_m) + 1)),
         rows_(std::max(3, static_cast<int>(plan.size_m / style.block_y_m) + 1)),
-        turn_(Uniform(Hash(seed_, 1), 0, 2 * std::numbers::pi)) {}
+        turn_(Uniform(Hash(seed_, 1), 0, 2 * std::numbers::pi)),
+        cellar_m_(plan.cellar_m) {}
 
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
@@ -36,6 +38,7 @@ class StreetGrid {
     double half_width_m = 0;
     bool highway = false;
     bool covered = false;
+    bool ramp = false;
     std::uint64_t seed = 0;
   };
   [[nodiscard]] bool Exists(int column, int row, bool across) const {
@@ -52,6 +55,10 @@ class StreetGrid {
     street.highway = main && style_.highways && !across;
     street.half_width_m = main ? style_.main_half_width_m : style_.half_width_m;
     street.covered = row + 1 < rows_ / 2 && Uniform(Hash(street.seed, 5)) < style_.covered_share;
+    if (cellar_m_ > 0) {
+      street.covered = row < CellarRow() || (row == CellarRow() && !across);
+      street.ramp = row == CellarRow() && across;
+    }
     const double bend = street.highway ? 0 : style_.bend_m * Gaussian(Hash(street.seed, 3));
     const Vec2d along = (to - from).normalized();
     constexpr int kPieces = 6;
@@ -61,6 +68,21 @@ class StreetGrid {
     }
     return street;
   }
+  // The level part holds all rows up to CellarRow(), with room for walls; ramps go on to just before the next row.
+  [[nodiscard]] std::optional<Cellar> MakeCellar() const {
+    if (cellar_m_ <= 0) return {};
+    const double room_m = style_.main_half_width_m + kFootway_m + 1;
+    const double x_m = 0.5 * (columns_ - 1) * style_.block_x_m + room_m;
+    const double low_m = -0.5 * (rows_ - 1) * style_.block_y_m - room_m;
+    const double edge_m = (CellarRow() - 0.5 * (rows_ - 1)) * style_.block_y_m + room_m;
+    Cellar cellar;
+    cellar.outline = {Turned({-x_m, low_m}), Turned({x_m, low_m}), Turned({x_m, edge_m}), Turned({-x_m, edge_m})};
+    cellar.out = Turned(Vec2d::UnitY());
+    cellar.edge_m = edge_m;
+    cellar.ramp_m = style_.block_y_m - 2 * room_m;
+    cellar.depth_m = cellar_m_;
+    return cellar;
+  }
   [[nodiscard]] std::int64_t NodeId(int column, int row) const { return 1'000'000 + column * 1000 + row; }
   // Distinct for every piece of street.
   [[nodiscard]] std::int64_t StreetId(int column, int row, bool across) const {
@@ -68,6 +90,10 @@ class StreetGrid {
   }
 
  private:
+  [[nodiscard]] int CellarRow() const { return rows_ / 2 - 1; }
+  [[nodiscard]] Vec2d Turned(const Vec2d& p) const {
+    return {std::cos(turn_) * p.x() - std::sin(turn_) * p.y(), std::sin(turn_) * p.x() + std::cos(turn_) * p.y()};
+  }
   [[nodiscard]] bool IsMain(int column, int row, bool across) const {
     return (across ? column : row) % style_.main_street_every == 0;
   }
@@ -85,7 +111,7 @@ class StreetGrid {
     const double phase = Uniform(Hash(seed_, 4), 0, 2 * std::numbers::pi);
     const double k = 2 * std::numbers::pi / kWave_m;
     p += style_.swirl_m * Vec2d(std::sin(k * p.y() + phase), std::sin(k * p.x() + 2 * phase));
-    return {std::cos(turn_) * p.x() - std::sin(turn_) * p.y(), std::sin(turn_) * p.x() + std::cos(turn_) * p.y()};
+    return Turned(p);
   }
 
   std::uint64_t seed_;
@@ -93,6 +119,7 @@ class StreetGrid {
   int columns_;
   int rows_;
   double turn_;
+  double cellar_m_;
 };
 
 // A place along a street and the direction there.
@@ -229,6 +256,7 @@ Town InventTown(const TownPlan& plan) {
   const TownStyle& style = StyleByName(plan.style);
   const StreetGrid grid(plan, style);
   Town town;
+  town.cellar = grid.MakeCellar();
   RowBuilder rows(style, town, 10'000'000);
   for (int column = 0; column < grid.columns(); ++column) {
     for (int row = 0; row < grid.rows(); ++row) {
@@ -243,12 +271,15 @@ Town InventTown(const TownPlan& plan) {
           nodes.push_back(id * 16 + static_cast<std::int64_t>(i) + 100'000'000);
         }
         nodes.push_back(across ? grid.NodeId(column, row + 1) : grid.NodeId(column + 1, row));
-        town.roads.push_back(
-            {id, std::move(nodes), street.line, street.half_width_m, true, !street.highway && !street.covered});
+        town.roads.push_back({id, std::move(nodes), street.line, street.half_width_m, true,
+                              !street.highway && !street.covered && !street.ramp});
         for (const Vec2d& p : street.line) town.bounds.Extend(p);
         const double corner_m = style.main_half_width_m + kFootway_m;
         if (street.covered) {
-          town.passages.push_back({id, street.line, street.half_width_m, 3.2, corner_m});
+          const double height_m = town.cellar ? Cellar::kCeiling_m : 3.2;
+          town.passages.push_back({id, street.line, street.half_width_m, height_m, corner_m});
+        } else if (street.ramp) {
+          continue;  // its walls belong to the cellar
         } else if (street.highway) {
           rows.AddHighwaySide(street.line, street.half_width_m, Hash(street.seed, 20));
           rows.AddHighwaySide(Backwards(street.line), street.half_width_m, Hash(street.seed, 21));

@@ -15,6 +15,7 @@ struct TownPlan {
   std::string style;  // see town_style.hpp
   double size_m = 0;  // side of the square that it fills
   std::uint64_t seed = 0;
+  double cellar_m = 0;  // how deep under ground one half of its streets lie; 0: none do
 };
 
 // Houses and gardens of a style to the left of a line along a street; `corner_m` stays free at its beginning. Ids count

@@ -8,7 +8,7 @@
 
 namespace mapweld::sim {
 
-Relief::Relief(double amplitude_m, std::uint64_t seed) {
+Relief::Relief(double amplitude_m, std::uint64_t seed, const std::optional<Cellar>& cellar) : cellar_(cellar) {
   for (std::size_t i = 0; i < waves_.size(); ++i) {
     const auto draw = [&](std::uint64_t what, double low, double high) {
       return Uniform(Hash(seed, 0x4E11EF + i, what), low, high);
@@ -34,10 +34,26 @@ Vec2d Relief::Slope(const Vec2d& p) const {
   return slope;
 }
 
+double Relief::StreetHeight(const Vec2d& p) const {
+  return Height(p) - (cellar_ ? cellar_->Depth(p) : 0);
+}
+
+Vec2d Relief::StreetSlope(const Vec2d& p) const {
+  return Slope(p) + (cellar_ ? cellar_->Slope(p) : Vec2d(0, 0));
+}
+
 void Relief::Lift(TownMesh* mesh) const {
   for (Mesh& kind : *mesh) {
     for (Eigen::Vector3f& vertex : kind.vertices) {
       vertex.z() += static_cast<float>(Height(vertex.head<2>().cast<double>()));
+    }
+  }
+}
+
+void Relief::LiftOntoStreet(TownMesh* mesh) const {
+  for (Mesh& kind : *mesh) {
+    for (Eigen::Vector3f& vertex : kind.vertices) {
+      vertex.z() += static_cast<float>(StreetHeight(vertex.head<2>().cast<double>()));
     }
   }
 }

@@ -93,13 +93,17 @@ SurveyPlan ReadSurvey(const json& object, const std::string& where) {
 }
 
 TownPlan ReadTownPlan(const json& object, const std::string& where) {
-  const Fields fields(object, where, {"style", "size_m", "seed"});
+  const Fields fields(object, where, {"style", "size_m", "seed", "cellar_m"});
   TownPlan plan;
   plan.style = fields.Get<std::string>("style");
   plan.size_m = fields.Get<double>("size_m");
   plan.seed = fields.Get<std::uint64_t>("seed");
   if (!(plan.size_m >= 300) || !(plan.size_m <= 10000)) {
     throw std::runtime_error(fmt::format("{}: size_m {} is outside 300..10000", where, plan.size_m));
+  }
+  if (fields.Has("cellar_m")) plan.cellar_m = fields.Get<double>("cellar_m");
+  if (plan.cellar_m != 0 && (!(plan.cellar_m >= 3.3) || !(plan.cellar_m <= 8))) {
+    throw std::runtime_error(fmt::format("{}: cellar_m {} is neither 0 nor in 3.3..8", where, plan.cellar_m));
   }
   (void)StyleByName(plan.style);
   return plan;

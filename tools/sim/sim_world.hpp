@@ -51,8 +51,8 @@ class SimWorld {
   double max_speed_mps_;
   double traffic_;
   double rain_share_;
-  Relief relief_;
   Town town_;
+  Relief relief_;
   bool real_paths_;  // which are driven as they are, not beside their line
   std::vector<SurveyedDrive> routes_;
   std::vector<std::uint64_t> drive_seeds_;

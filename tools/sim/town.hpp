@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "tools/sim/cellar.hpp"
 #include "tools/sim/polygon.hpp"
 
 namespace mapweld::sim {
@@ -56,7 +58,8 @@ struct Town {
   std::vector<Barrier> barriers;
   std::vector<Tree> trees;
   std::vector<Passage> passages;
-  Box2 bounds;  // of the roads
+  std::optional<Cellar> cellar;  // its streets are passages; its ramps are roads that cross its edge
+  Box2 bounds;                   // of the roads
 };
 
 }  // namespace mapweld::sim

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/sim/building_mesh.hpp"
+#include "tools/sim/cellar_mesh.hpp"
 #include "tools/sim/roadside.hpp"
 
 namespace mapweld::sim {
@@ -14,38 +15,75 @@ Eigen::Vector3d Lift(const Vec2d& p, double z) {
   return {p.x(), p.y(), z};
 }
 
-// Small tiles, because a ray is cut with single precision relative to the size of a triangle.
-void AddGround(const Sight& sight, TownMesh& mesh) {
+// Small tiles, because a ray is cut with single precision relative to the size of a triangle; tiny ones about the
+// trenches of ramps, which are left out.
+void AddGround(const Town& town, const Sight& sight, TownMesh& mesh) {
   constexpr double kBelowRoad_m = -0.05;
+  constexpr double kTiny_m = 0.5;
+  const auto add = [&](const Vec2d& middle, double side_m) {
+    Of(mesh, Surface::kGrass).AddFace(Rectangle(middle, Vec2d::UnitX(), side_m / 2, side_m / 2), kBelowRoad_m);
+  };
+  const std::vector<Ramp> ramps = RampsOf(town);
   for (const Vec2d& corner : sight.Cells()) {
     const Vec2d middle = corner + Vec2d::Constant(Sight::kCell_m / 2);
-    Of(mesh, Surface::kGrass)
-        .AddFace(Rectangle(middle, Vec2d::UnitX(), Sight::kCell_m / 2, Sight::kCell_m / 2), kBelowRoad_m);
+    std::vector<Ramp> near;
+    for (const Ramp& ramp : ramps) {
+      if (DistanceToSegment(middle, ramp.line.front(), ramp.line.back()) < Sight::kCell_m) near.push_back(ramp);
+    }
+    if (near.empty()) {
+      add(middle, Sight::kCell_m);
+      continue;
+    }
+    for (double x = kTiny_m / 2; x < Sight::kCell_m; x += kTiny_m) {
+      for (double y = kTiny_m / 2; y < Sight::kCell_m; y += kTiny_m) {
+        const Vec2d p = corner + Vec2d(x, y);
+        const bool open =
+            std::any_of(near.begin(), near.end(), [&](const Ramp& ramp) { return InTrench(ramp, *town.cellar, p); });
+        if (!open) add(p, kTiny_m);
+      }
+    }
   }
 }
 
-void AddRoad(const Road& road, const Sight& sight, TownMesh& mesh) {
-  constexpr int kDiscCorners = 12;
-  Mesh& surface = Of(mesh, Surface::kRoad);
+// A disc at a node closes the wedge between two straight pieces.
+void AddDisc(const Vec2d& node, double radius_m, Mesh* surface) {
+  constexpr int kCorners = 12;
+  Polyline disc;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2 * 3.14159265358979 * k / kCorners;
+    disc.emplace_back(node + radius_m * Vec2d(std::cos(angle), std::sin(angle)));
+  }
+  surface->AddFace(disc, 0);
+}
+
+// In short pieces, so that they can follow hills. A ramp is straight, and its pieces shorter.
+Mesh RoadSurface(const Road& road, const Sight& sight, bool is_ramp) {
+  const double piece_m = is_ramp ? 1 : 10;
+  Mesh surface;
   for (std::size_t i = 0; i < road.line.size(); ++i) {
     if (!sight.Contains(road.line[i])) continue;
-    // A disc at every node closes the wedge between two straight pieces.
-    Polyline disc;
-    for (int k = 0; k < kDiscCorners; ++k) {
-      const double angle = 2 * 3.14159265358979 * k / kDiscCorners;
-      disc.emplace_back(road.line[i] + road.half_width_m * Vec2d(std::cos(angle), std::sin(angle)));
-    }
-    surface.AddFace(disc, 0);
+    if (!is_ramp) AddDisc(road.line[i], road.half_width_m, &surface);
     if (i == 0) continue;
     const Vec2d step = road.line[i] - road.line[i - 1];
     if (step.norm() < 1e-6) continue;
-    // In short pieces, so that they can follow hills.
-    constexpr double kPiece_m = 10;
-    const double pieces = std::ceil(step.norm() / kPiece_m);
+    const double pieces = std::ceil(step.norm() / piece_m);
     for (double k = 0; k < pieces; ++k) {
       const Vec2d middle = road.line[i - 1] + (k + 0.5) / pieces * step;
       surface.AddFace(Rectangle(middle, step.normalized(), step.norm() / pieces / 2, road.half_width_m), 0);
     }
+  }
+  return surface;
+}
+
+void AddRoads(const Town& town, const Sight& sight, TownMesh& mesh) {
+  const std::vector<Ramp> ramps = RampsOf(town);
+  for (Road road : town.roads) {
+    const auto ramp = std::find_if(ramps.begin(), ramps.end(), [&](const Ramp& r) { return r.line == road.line; });
+    const bool is_ramp = ramp != ramps.end();
+    if (is_ramp) road.half_width_m = ramp->half_width_m;
+    Mesh surface = RoadSurface(road, sight, is_ramp);
+    if (town.cellar) LowerIntoCellar(*town.cellar, &surface);
+    Of(mesh, Surface::kRoad).Append(surface);
   }
 }
 
@@ -122,15 +160,22 @@ void Mesh::Append(const Mesh& other) {
 
 TownMesh BuildTownMesh(const Town& town, const Sight& sight, const Sight& close) {
   TownMesh mesh;
-  AddGround(sight, mesh);
-  for (const Road& road : town.roads) AddRoad(road, sight, mesh);
+  AddGround(town, sight, mesh);
+  AddRoads(town, sight, mesh);
   for (const Building& building : town.buildings) {
     const Vec2d& corner = building.footprint.front();
     if (sight.Contains(corner)) AddBuilding(building, close.Contains(corner), mesh);
   }
+  TownMesh passages;
   for (const Passage& passage : town.passages) {
-    if (sight.Contains(passage.line.front())) AddPassage(passage, mesh);
+    if (sight.Contains(passage.line.front())) AddPassage(passage, passages);
   }
+  Mesh& walls = Of(passages, Surface::kWall);
+  if (town.cellar) {
+    LowerIntoCellar(*town.cellar, &walls);
+    AddCellar(town, &mesh);
+  }
+  Of(mesh, Surface::kWall).Append(walls);
   for (const Barrier& barrier : town.barriers) {
     if (sight.Contains(barrier.line.front())) AddBarrier(barrier, mesh);
   }

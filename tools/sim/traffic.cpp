@@ -110,8 +110,8 @@ Traffic::Moving Traffic::Between(double t_begin, double t_end) const {
       Of(moving.end, Surface::kCar).Append(cars_later);
     }
   }
-  relief_.Lift(&moving.begin);
-  relief_.Lift(&moving.end);
+  relief_.LiftOntoStreet(&moving.begin);
+  relief_.LiftOntoStreet(&moving.end);
   return moving;
 }
 

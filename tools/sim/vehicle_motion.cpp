@@ -62,10 +62,10 @@ UniformSpline<6> BuildState(const LanePath& path, const DrivingStyle& style, con
     const Vec2d at = path.Position(s);
     const double heading = path.Heading(s);
     // The road under the wheels: uphill lifts the nose, ground that rises to the left leans the body to the right.
-    const Vec2d slope = relief.Slope(at);
+    const Vec2d slope = relief.StreetSlope(at);
     const double uphill = slope.dot(Vec2d(std::cos(heading), std::sin(heading)));
     const double left_up = slope.dot(Vec2d(-std::sin(heading), std::cos(heading)));
-    state << at, kBodyHeight_m + relief.Height(at),
+    state << at, kBodyHeight_m + relief.StreetHeight(at),
         std::atan(left_up) + roll.Follow(kRollPerLateralAccel * speed * speed * path.Curvature(s)),
         -std::atan(uphill) + pitch.Follow(kPitchPerAccel * accel), heading;
     for (std::size_t k = 0; k < kTones.size(); ++k) {
