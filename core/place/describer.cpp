@@ -53,7 +53,12 @@ Status Describer::Describe(const submap::Submap& submap, PlaceDescription* descr
 
 void Describer::DescribePlace(PlaceDescriptor* descriptor) {
   std::array<float, kDescriptorDim> values{};
-  method_ == Method::kTrained ? trained_.Run(image_, values) : HandmadeCode(image_.AllStructure(), values);
+  if (method_ == Method::kTrained) {
+    trained_.Run(image_, values);
+    unfamiliarity_ = trained_.familiarity().Distance(image_);
+  } else {
+    HandmadeCode(image_.AllStructure(), values);
+  }
   descriptor->scale = QuantizeToInt8(values, &descriptor->q);
 }
 

@@ -33,6 +33,10 @@ class Describer {
   // beyond 1 km, or points that all lie in one plane or line. A description that looks valid is never made up.
   Status Describe(const submap::Submap& submap, PlaceDescription* description);
 
+  // Of the last submap that was described: above 1 it looks unlike the places that the network was trained on
+  // (familiarity.hpp), and the description deserves less trust. 0 for what was not trained.
+  [[nodiscard]] float unfamiliarity() const { return unfamiliarity_; }
+
  private:
   void DescribePlace(PlaceDescriptor* descriptor);
   void DescribeOrientation(OrientationSignature* signature) const;
@@ -42,6 +46,7 @@ class Describer {
   PlanImage image_;
   AzimuthProfile azimuth_;
   TrainedCode trained_;
+  float unfamiliarity_ = 0;
 };
 
 }  // namespace mapweld::place

@@ -8,7 +8,8 @@
 namespace mapweld::place {
 
 Status TrainedCode::Open(std::span<const std::uint8_t> model, const nn::Kernels& kernels) {
-  for (const Status status : {model_.Open(model), spectrum_.Open(model_), network_.Open(model_, kernels)}) {
+  for (const Status status :
+       {model_.Open(model), spectrum_.Open(model_), network_.Open(model_, kernels), familiarity_.Open(model_)}) {
     if (status != Status::kOk) return status;
   }
   const auto share = model_.Find<float>("network.share", {1});

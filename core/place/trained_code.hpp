@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/place/descriptor.hpp"
+#include "core/place/familiarity.hpp"
 #include "core/place/image_features.hpp"
 #include "core/place/plan_image.hpp"
 #include "core/place/plan_network.hpp"
@@ -19,11 +20,14 @@ std::span<const std::uint8_t> CompiledModel();
 
 class TrainedCode {
  public:
-  // The statuses of ModelBlob, SpectrumCode and PlanNetwork. The bytes must outlive this and lie at a multiple of 64.
+  // The statuses of ModelBlob, SpectrumCode, PlanNetwork and Familiarity. The bytes must outlive this and lie at a
+  // multiple of 64.
   Status Open(std::span<const std::uint8_t> model, const nn::Kernels& kernels);
 
   // out: unit length.
   void Run(const PlanImage& image, std::span<float, kDescriptorDim> out);
+
+  [[nodiscard]] const Familiarity& familiarity() const { return familiarity_; }
 
  private:
   static_assert(SpectrumCode::kOutputs + PlanNetwork::kOutputs == kDescriptorDim);
@@ -33,6 +37,7 @@ class TrainedCode {
   ImageFeatures features_;
   SpectrumCode spectrum_;
   PlanNetwork network_;
+  Familiarity familiarity_;
 };
 
 }  // namespace mapweld::place

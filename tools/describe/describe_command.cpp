@@ -40,6 +40,7 @@ void Run(const Arguments& arguments) {
   WritePlaceTable(arguments.out, drive.variants[0]);
   fmt::print("{}: {} keyframes by {}", arguments.out.string(), drive.variants[0].size(), variant);
   if (drive.refused[0] > 0) fmt::print("; {} of them have nothing to describe (scale 0)", drive.refused[0]);
+  if (drive.unfamiliar[0] > 0) fmt::print("; {} look unlike the places it was trained on", drive.unfamiliar[0]);
   fmt::print("\n");
 }
 

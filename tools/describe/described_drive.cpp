@@ -37,6 +37,7 @@ DescribedDrive DescribeKeyframes(const KeyframeSource& source, const std::vector
   const int jobs = std::min(count, 4 * merge::ThreadCount(threads));
   std::mutex mutex;
   int done = 0;
+  out.unfamiliar.assign(variants.size(), 0);
   merge::ParallelFor(jobs, threads, [&](int job) {
     std::vector<std::unique_ptr<PlaceMethod>> methods;
     for (const std::string& name : variants) methods.push_back(name == kPublished ? nullptr : MakeVariant(name));
@@ -57,6 +58,9 @@ DescribedDrive DescribeKeyframes(const KeyframeSource& source, const std::vector
           *place = keyframe.place;
         } else if (cloud == nullptr || methods[v]->Describe(*submap, place) != Status::kOk) {
           *place = {};
+        } else if (methods[v]->IsUnfamiliar()) {
+          const std::lock_guard lock(mutex);
+          ++out.unfamiliar[v];
         }
       }
     }

@@ -20,6 +20,7 @@ struct DescribedDrive {
   std::string name;
   std::vector<std::vector<PlaceRow>> variants;  // in the order asked for; one row per keyframe
   std::vector<int> refused;                     // per variant: keyframes without a description (scale 0)
+  std::vector<int> unfamiliar;                  // per variant: described ones unlike what it was trained on
 };
 
 // Variants by name (variants.hpp), or kPublished for a log. Keyframes whose submap is missing stay without description.

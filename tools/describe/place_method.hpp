@@ -19,6 +19,9 @@ class PlaceMethod {
   // *place untouched, for a submap that cannot be described. Not for two threads at once.
   virtual Status Describe(const submap::Submap& submap, place::PlaceDescription* place) = 0;
 
+  // Whether the submap that was described last looks unlike what the method was trained on.
+  [[nodiscard]] virtual bool IsUnfamiliar() const { return false; }
+
   // The same bytes made ready for many comparisons.
   using Features = std::vector<float>;
   [[nodiscard]] virtual Features Prepare(const place::PlaceDescription& place) const = 0;

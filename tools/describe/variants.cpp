@@ -33,6 +33,7 @@ class AgentDescriptor final : public CosineComparison {
   Status Describe(const submap::Submap& submap, place::PlaceDescription* place) override {
     return describer_->Describe(submap, place);
   }
+  [[nodiscard]] bool IsUnfamiliar() const override { return describer_->unfamiliarity() > 1; }
 
  private:
   std::unique_ptr<place::Describer> describer_ = std::make_unique<place::Describer>(kMethod);

@@ -25,7 +25,7 @@ class TaskBuilder {
     task_.variant = std::move(variant);
     task_.method = std::move(method);
   }
-  void AddSession(const std::string& name, const std::vector<PlaceRow>& rows) {
+  void AddSession(const std::string& name, const std::vector<PlaceRow>& rows, int unfamiliar) {
     std::vector<geom::Vec3d> positions;
     for (const PlaceRow& row : rows) {
       const bool valid = row.place.descriptor.scale > 0;
@@ -33,6 +33,7 @@ class TaskBuilder {
       task_.features.push_back(valid ? task_.method->Prepare(row.place) : PlaceMethod::Features{});
       task_.refused += valid ? 0 : 1;
     }
+    task_.unfamiliar += unfamiliar;
     set_->AddSession(name, positions);
   }
   PlaceTask Take() {
@@ -67,7 +68,7 @@ std::vector<PlaceTask> TasksOfTables(const std::vector<std::string>& inputs) {
       builders.emplace_back(table.name, TaskBuilder(table.name, std::move(method)));
       at = builders.end() - 1;
     }
-    at->second.AddSession(table.file.string(), describe::ReadPlaceTable(table.file));
+    at->second.AddSession(table.file.string(), describe::ReadPlaceTable(table.file), 0);
   }
   std::vector<PlaceTask> tasks;
   for (auto& [name, builder] : builders) tasks.push_back(builder.Take());
@@ -89,7 +90,9 @@ std::vector<PlaceTask> TasksOfRecordings(const std::vector<std::string>& inputs,
   sessions.threads = arguments.threads;
   ForEachSession(sessions, progress, [&](const describe::KeyframeSource& source) {
     const DescribedDrive drive = describe::DescribeKeyframes(source, variants, arguments.threads, progress);
-    for (std::size_t v = 0; v < variants.size(); ++v) builders[v].AddSession(drive.name, drive.variants[v]);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      builders[v].AddSession(drive.name, drive.variants[v], drive.unfamiliar[v]);
+    }
   });
   std::vector<PlaceTask> tasks;
   for (TaskBuilder& builder : builders) tasks.push_back(builder.Take());

@@ -49,8 +49,8 @@ VariantScore Score(const PlaceTask& task, int threads, merge::TerminalProgress* 
     const auto& b = task.features[static_cast<std::size_t>(candidate)];
     return a.empty() || b.empty() ? std::numeric_limits<float>::infinity() : task.method->Distance(a, b);
   };
-  return {task.variant, task.set->sessions(), task.set->size(), task.refused,
-          ScorePlaces(*task.set, distance, threads, progress)};
+  return {task.variant, task.set->sessions(), task.set->size(),
+          task.refused, task.unfamiliar,      ScorePlaces(*task.set, distance, threads, progress)};
 }
 
 // Precision over recall, and recall over the number of candidates looked at.
@@ -108,8 +108,12 @@ std::string PlaceTable(const std::vector<VariantScore>& scores) {
       "F1max, EP (extended precision), AUC: of the best matches of all keyframes. 5 m, 25 m: R@1 within these radii.\n",
       several ? "one of another session" : "one at least 60 m of path earlier");
   for (const VariantScore& s : scores) {
-    if (s.refused == 0) continue;
-    out += fmt::format("{}: {} keyframes have no descriptor and count as missed.\n", s.variant, s.refused);
+    if (s.refused > 0) {
+      out += fmt::format("{}: {} keyframes have no descriptor and count as missed.\n", s.variant, s.refused);
+    }
+    if (s.unfamiliar > 0) {
+      out += fmt::format("{}: {} keyframes look unlike the places it was trained on.\n", s.variant, s.unfamiliar);
+    }
   }
   return out;
 }
@@ -123,6 +127,7 @@ std::string PlaceJson(const std::vector<VariantScore>& scores) {
                     {"sessions", s.sessions},
                     {"keyframes", s.keyframes},
                     {"without_descriptor", s.refused},
+                    {"unlike_training", s.unfamiliar},
                     {"radii", std::move(radii)}});
   }
   return Json{{"descriptors", std::move(json)}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -16,7 +16,8 @@ struct VariantScore {
   std::string variant;
   int sessions = 0;
   int keyframes = 0;
-  int refused = 0;  // keyframes without descriptor; they count as missed
+  int refused = 0;     // keyframes without descriptor; they count as missed
+  int unfamiliar = 0;  // keyframes unlike what the descriptor was trained on; they count like all
   PlaceScore score;
 };
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -22,18 +22,22 @@ Polyline ReadPath(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) {
     throw std::runtime_error(fmt::format(
-        "{} is not there: this scenario drives the ground-truth paths of the KITTI odometry benchmark, which are not "
-        "part of the program; put its poses/*.txt into that folder",
+        "{} is not there: this scenario drives real paths, of the KITTI odometry benchmark or the NCLT data set, which "
+        "are not part of the program; put the ground truth (KITTI: poses/*.txt, NCLT: as TUM) into that folder",
         file.string()));
   }
   Polyline path;
   std::string line;
-  while (std::getline(stream, line)) {
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (line.starts_with('#')) continue;
     std::istringstream row(line);
-    std::array<double, 12> pose{};
-    for (double& value : pose) row >> value;
-    if (!row) throw std::runtime_error(fmt::format("{}, row {}: not twelve numbers", file.string(), path.size() + 1));
-    const Vec2d p(pose[3], pose[11]);
+    const std::vector<double> pose{std::istream_iterator<double>(row), {}};
+    const bool is_kitti = pose.size() == 12;
+    if (!row.eof() || (!is_kitti && pose.size() != 8)) {
+      throw std::runtime_error(
+          fmt::format("{}, row {}: neither twelve numbers (KITTI) nor eight (TUM)", file.string(), number));
+    }
+    const Vec2d p = is_kitti ? Vec2d(pose[3], pose[11]) : Vec2d(pose[1], pose[2]);
     if (path.empty() || (p - path.back()).norm() > 0.3) path.push_back(p);
   }
   if (path.size() < 2 || Length(path) < 100) {
@@ -52,8 +56,10 @@ PathTown BuildPathTown(const PathPlan& plan, std::uint64_t seed) {
   std::int64_t next_node = 1;
   for (std::size_t n = 0; n < plan.names.size(); ++n) {
     Polyline path = Resample(ReadPath(plan.folder / (plan.names[n] + ".txt")), kNode_m);
-    const Vec2d shift = Vec2d(static_cast<double>(n % 4), static_cast<double>(n / 4)) * kApart_m - path.front();
-    for (Vec2d& p : path) p += shift;
+    if (!plan.one_frame) {
+      const Vec2d shift = Vec2d(static_cast<double>(n % 4), static_cast<double>(n / 4)) * kApart_m - path.front();
+      for (Vec2d& p : path) p += shift;
+    }
     Road road{static_cast<std::int64_t>(n) + 1, {}, path, kHalfWidth_m, true, true};
     for (std::size_t i = 0; i < path.size(); ++i) road.nodes.push_back(next_node++);
     for (const Vec2d& p : path) result.town.bounds.Extend(p);
@@ -69,7 +75,7 @@ PathTown BuildPathTown(const PathPlan& plan, std::uint64_t seed) {
     StreetPath street;
     for (std::size_t i = 0; i < path.size(); ++i) street.nodes.push_back(static_cast<std::uint32_t>(road.nodes[i]));
     street.centreline = path;
-    result.drives.push_back({static_cast<int>(n), std::move(street)});
+    result.drives.push_back({plan.one_frame ? 0 : static_cast<int>(n), std::move(street)});
     result.town.roads.push_back(std::move(road));
   }
   MoveHousesOffStreets(result.town);

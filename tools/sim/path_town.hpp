@@ -13,11 +13,13 @@ namespace mapweld::sim {
 
 struct PathTown {
   Town town;
-  std::vector<SurveyedDrive> drives;  // one per path, each a zone of its own, 3 km apart
+  // One per path; each a zone of its own, 3 km apart, unless the plan says that they lie in one frame.
+  std::vector<SurveyedDrive> drives;
 };
 
-// Reads rows of twelve numbers, the 3 x 4 pose of KITTI's left camera; x and z are the plane, heights are left out.
-// Throws std::runtime_error that says where the data may be had when a file is missing, and for one without poses.
+// Reads rows of twelve numbers, the 3 x 4 pose of KITTI's left camera (x and z are the plane), or of eight, a TUM
+// trajectory (x and y are the plane); lines that begin with # are remarks. Heights are left out. Throws
+// std::runtime_error that says where the data may be had when a file is missing, and for one without poses.
 PathTown BuildPathTown(const PathPlan& plan, std::uint64_t seed);
 
 }  // namespace mapweld::sim

@@ -110,8 +110,9 @@ TownPlan ReadTownPlan(const json& object, const std::string& where) {
 }
 
 PathPlan ReadPathPlan(const json& object, const std::filesystem::path& beside, const std::string& where) {
-  const Fields fields(object, where, {"folder", "names"});
+  const Fields fields(object, where, {"folder", "names", "one_frame"});
   PathPlan plan;
+  if (fields.Has("one_frame")) plan.one_frame = fields.Get<bool>("one_frame");
   plan.folder = beside / fields.Get<std::string>("folder");
   plan.names = fields.Get<std::vector<std::string>>("names");
   if (plan.names.empty()) throw std::runtime_error(fmt::format("{}: 'names' is empty", where));

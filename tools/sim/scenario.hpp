@@ -27,7 +27,8 @@ using TownSource = std::variant<std::filesystem::path, TownPlan>;
 // Real paths instead of routes: the town is invented around them.
 struct PathPlan {
   std::filesystem::path folder;
-  std::vector<std::string> names;  // of files "NAME.txt" of KITTI poses; vehicle n drives the n-th
+  std::vector<std::string> names;  // of files "NAME.txt", see path_town.hpp; vehicle n drives the n-th
+  bool one_frame = false;          // all lie in one frame and meet; else each gets a town of its own
 };
 
 struct Scenario {

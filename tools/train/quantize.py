@@ -64,7 +64,9 @@ class IntegerNetwork:
                              / steps[0]).astype(np.float32)
         self.convs = [IntegerConv(layer, steps[i], steps[i + 1])
                       for i, layer in enumerate((network.first, network.second, network.third))]
+        self.steps = steps
         self.map_step = np.float32(steps[3])
+        self.feature_step = feature_step
         norm = network.feature_norm
         scale = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().double().numpy()
         self.feature_scale = (scale / feature_step).astype(np.float32)
@@ -74,20 +76,28 @@ class IntegerNetwork:
         self.output_scale = (step * feature_step).astype(np.float32)
         self.network = network
 
-    def __call__(self, pixels):
-        """uint8 [n, 3, 32, 64] -> float32 [n, 256] of unit length."""
+    def stages(self, pixels):
+        """uint8 [n, 3, 32, 64] -> what each stage puts out, in the units of the floating-point network."""
         x = pixels.astype(np.float32) * self.input_scale[None, :, None, None] + self.input_offset[None, :, None, None]
         x = np.floor(np.clip(x, -127, 127) + np.float32(0.5)).astype(np.int64)
-        for conv in self.convs:
+        out = {"input": x * self.steps[0]}
+        for name, conv, step in zip(("first", "second", "third"), self.convs, self.steps[1:]):
             x = conv(x)
+            out[name] = x * step
         image = torch.from_numpy(pixels.astype(np.float32) / 64)
         feature_map = torch.from_numpy(x.astype(np.float32) * self.map_step)
         with torch.no_grad():
             features = torch.cat([self.network.map_features(feature_map), image_features(image)], 1)
         features = features.numpy() * self.feature_scale + self.feature_offset
         q = np.floor(np.clip(features, -127, 127) + np.float32(0.5))
-        out = (q.astype(np.float64) @ self.rows.T.astype(np.float64)).astype(np.float32) * self.output_scale
-        return out / np.linalg.norm(out, axis=1, keepdims=True)
+        out["features"] = q * self.feature_step
+        code = (q.astype(np.float64) @ self.rows.T.astype(np.float64)).astype(np.float32) * self.output_scale
+        out["code"] = code / np.linalg.norm(code, axis=1, keepdims=True)
+        return out
+
+    def __call__(self, pixels):
+        """uint8 [n, 3, 32, 64] -> float32 [n, 256] of unit length."""
+        return self.stages(pixels)["code"]
 
     def tensors(self):
         out = {"input.scale": self.input_scale, "input.offset": self.input_offset}
@@ -124,13 +134,58 @@ class IntegerCode:
                 **self.network.tensors()}
 
 
+def float_stages(network, pixels):
+    """What IntegerNetwork.stages stands for."""
+    image = torch.from_numpy(pixels.astype(np.float32) / 64)
+    with torch.no_grad():
+        out = {"input": network.input_norm(image - 1)}
+        for name, before in (("first", "input"), ("second", "first"), ("third", "second")):
+            out[name] = getattr(network, name)(out[before])
+        of_image = image_features(image)
+        out["features"] = network.feature_norm(network.features(image, of_image))
+        out["code"] = network(image, of_image)
+    return {name: values.numpy() for name, values in out.items()}
+
+
+def stage_errors(network, integer, pixels):
+    """Root mean square error of each stage of the integer network, in parts of the stage's own root mean square."""
+    exact, rounded = float_stages(network, pixels), integer.stages(pixels)
+    return {name: float(np.sqrt(np.mean((rounded[name] - exact[name]) ** 2) / np.mean(exact[name] ** 2))) for name in exact}
+
+
+RING_MEANS, LIMIT_SHARE = 3 * 32, 0.999
+
+
+class Familiarity:
+    """What core/place/familiarity computes. images: uint8 [n, 3, 32, 64], all views of training places."""
+
+    def __init__(self, images):
+        means = self.ring_means(images)
+        self.mean = means.mean(0)
+        variance, axes = np.linalg.eigh(np.cov(means.T))
+        # What hardly varies in training is given a hundredth of the mean variance, so that it cannot decide alone.
+        whitening = (axes / np.sqrt(variance + 0.01 * variance.mean())).T
+        self.whitening = whitening / np.quantile(np.linalg.norm((means - self.mean) @ whitening.T, axis=1), LIMIT_SHARE)
+
+    @staticmethod
+    def ring_means(images):
+        return images.reshape(-1, RING_MEANS, images.shape[-1]).sum(2, dtype=np.int64) / (64 * images.shape[-1])
+
+    def __call__(self, images):
+        """Above 1: unlike all training."""
+        return np.linalg.norm((self.ring_means(images) - self.mean) @ self.whitening.T, axis=1)
+
+    def tensors(self):
+        return {"familiar.mean": self.mean.astype(np.float32), "familiar.whitening": self.whitening.astype(np.float32)}
+
+
 def in_parts(run, pixels):
     return np.concatenate([run(pixels[i : i + 256]) for i in range(0, len(pixels), 256)])
 
 
-def write_golden(path, submap_set, code):
+def write_golden(path, submap_set, code, familiarity):
     """Four thinned submaps and what the agent must make of them: uint32 count, then per submap uint32 points, int16
-    [points, 3] in centimetres and float32 [1024]."""
+    [points, 3] in centimetres, float32 [1024] and float32 how unlike training it is."""
     submaps = list(read_submaps(submap_set))
     with open(path, "wb") as file:
         file.write(np.uint32(4).tobytes())
@@ -139,6 +194,7 @@ def write_golden(path, submap_set, code):
             image = plan_image(centimetres.astype(np.float32) * np.float32(0.01))
             file.write(np.uint32(len(centimetres)).tobytes() + centimetres.tobytes())
             file.write(code(image[None]).astype("<f4").tobytes())
+            file.write(familiarity(image[None]).astype("<f4").tobytes())
 
 
 def main():
@@ -157,7 +213,8 @@ def main():
     images = np.concatenate([s.images(np.sort(rng.choice(s.index, min(256, len(s.index)), replace=False)), 0)
                              for s in sets])
     integer = IntegerCode(model, images, a.share)
-    write_model(a.out, a.name, integer.tensors())
+    familiarity = Familiarity(np.concatenate([s.image[s.index].reshape(-1, *s.image.shape[2:]) for s in sets]))
+    write_model(a.out, a.name, integer.tensors() | familiarity.tensors())
 
     def floating(pixels):
         with torch.no_grad():
@@ -174,9 +231,12 @@ def main():
         cosine = (in_parts(network_only, pixels) * in_parts(integer.network, pixels)).sum(1)
         f, q = in_parts(floating, pixels), in_parts(integer, pixels)
         print(f"{path}: network, cosine of int8 and float: mean {cosine.mean():.5f}, lowest {cosine.min():.5f}; "
-              f"descriptor, Recall@1: float {recall(places, f, f)[0]:.4f}, int8 {recall(places, q, q)[0]:.4f}")
+              f"descriptor, Recall@1: float {recall(places, f, f)[0]:.4f}, int8 {recall(places, q, q)[0]:.4f}; "
+              f"unlike training: {(familiarity(pixels) > 1).mean():.4f}")
+        errors = stage_errors(model.network, integer.network, pixels[:512])
+        print("  error of each stage: " + ", ".join(f"{name} {error:.4f}" for name, error in errors.items()))
     if a.golden:
-        write_golden(a.golden[1], a.golden[0], integer)
+        write_golden(a.golden[1], a.golden[0], integer, familiarity)
 
 
 if __name__ == "__main__":

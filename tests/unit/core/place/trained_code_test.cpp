@@ -20,6 +20,7 @@ namespace {
 struct Golden {
   std::vector<submap::SubmapPoint> points;
   std::vector<float> code;
+  float unfamiliarity = 0;
 };
 
 template <class T>
@@ -42,6 +43,7 @@ std::vector<Golden> ReadGolden() {
       for (float* axis : {&p.x, &p.y, &p.z}) *axis = static_cast<float>(Take<std::int16_t>(bytes, &at)) * 0.01F;
     }
     for (int i = 0; i < kDescriptorDim; ++i) g.code.push_back(Take<float>(bytes, &at));
+    g.unfamiliarity = Take<float>(bytes, &at);
   }
   return all;
 }
@@ -76,7 +78,39 @@ TEST(TrainedCode, GivesWhatTheTrainersIntegersGive) {
     EXPECT_NEAR(squares, 1, 1e-4);
     // Two features of a thousand may fall on the other side of a rounding step: Python's transforms round differently.
     EXPECT_GT(dot, 0.9999);
+    EXPECT_NEAR(machine->code.familiarity().Distance(machine->image), g.unfamiliarity, 1e-3);
   }
+}
+
+TEST(TrainedCode, KnowsTheStreetsOfATownAndNotARoomOrACloudOfNoise) {
+  const auto machine = std::make_unique<Machine>();
+  ASSERT_EQ(machine->code.Open(CompiledModel(), nn::PortableKernels()), Status::kOk);
+  const auto unfamiliarity = [&](const std::vector<submap::SubmapPoint>& points) {
+    (void)machine->Describe(points);
+    return machine->code.familiarity().Distance(machine->image);
+  };
+  for (const Golden& g : ReadGolden()) EXPECT_LT(unfamiliarity(g.points), 1) << "a street of a town held out";
+  std::vector<submap::SubmapPoint> room;  // 6 x 5 m with a ceiling
+  std::vector<submap::SubmapPoint> noise;
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 20; ++k) {
+      const float u = 0.3F * static_cast<float>(i) - 3;
+      const float v = 0.25F * static_cast<float>(k) - 2.5F;
+      for (const float z : {-1.5F, 1.5F}) room.push_back({.x = u, .y = v, .z = z, .count = 1});
+      for (const float side : {-1.0F, 1.0F}) {
+        room.push_back({.x = u, .y = side * 2.5F, .z = 0.15F * static_cast<float>(k) - 1.5F, .count = 1});
+        room.push_back({.x = side * 3, .y = v, .z = 0.15F * static_cast<float>(i) - 1.5F, .count = 1});
+      }
+    }
+  }
+  std::uint64_t dice = 1;
+  const auto draw = [&] {
+    dice = dice * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<float>(dice >> 40U) / static_cast<float>(1U << 24U) - 0.5F;
+  };
+  for (int i = 0; i < 20000; ++i) noise.push_back({.x = 80 * draw(), .y = 80 * draw(), .z = 10 * draw(), .count = 1});
+  EXPECT_GT(unfamiliarity(room), 1);
+  EXPECT_GT(unfamiliarity(noise), 1);
 }
 
 TEST(TrainedCode, GivesTheSameBytesWithEveryKernelOfThisMachine) {

@@ -43,12 +43,29 @@ TEST(PathTown, BuildsStreetsWherePathsRunAndHousesBesideThem) {
   }
 }
 
+TEST(PathTown, ReadsTumTrajectoriesThatMeetInOneFrame) {
+  const TestFolder folder;
+  std::string east = "# timestamp x y z qx qy qz qw\n";
+  std::string north = east;
+  for (int i = 0; i < 300; ++i) {
+    const std::string s = std::to_string(i);
+    east += s + " " + s + " 100 5 0 0 0 1\n";
+    north += s + " 150 " + s + " 5 0 0 0 1\n";
+  }
+  WriteText(folder / "east.txt", east);
+  WriteText(folder / "north.txt", north);
+  const PathTown built = BuildPathTown({folder / "", {"east", "north"}, true}, 1);
+  EXPECT_EQ(built.drives[0].zone, built.drives[1].zone);
+  EXPECT_EQ(built.drives[0].path.centreline.front(), Vec2d(0, 100));
+  EXPECT_EQ(built.drives[1].path.centreline.front(), Vec2d(150, 0));
+  for (const Building& building : built.town.buildings) {
+    EXPECT_GT(DistanceToPolygon(building.footprint, {150, 100}), 3.5) << "where they cross";
+  }
+}
+
 TEST(PathTown, SaysWhatIsMissingAndWhatIsWrong) {
   const TestFolder folder;
-  EXPECT_THAT(MessageOf([&] {
-                (void)BuildPathTown({folder / "", {"00"}}, 1);
-              }),
-              testing::HasSubstr("put its poses/*.txt into that folder"));
+  EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }), testing::HasSubstr("poses/*.txt"));
   WriteText(folder / "00.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
   EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }), testing::HasSubstr("row 1"));
   WriteText(folder / "00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
