@@ -21,8 +21,8 @@ class Familiarity {
   Status Open(const nn::ModelBlob& model);
 
   // How far the image's ring means lie from those of the training places: their Mahalanobis distance (Mahalanobis,
-  // 1936) in parts of the one that 999 of 1000 training views keep. Above 1 the place is unlike all training. Does not
-  // depend on the heading. 9300 multiply-adds.
+  // 1936) in parts of the one that 99 of 100 training views keep, disturbed ones among them. Above 1 the place is
+  // unlike all training. Does not depend on the heading. 9300 multiply-adds.
   [[nodiscard]] float Distance(const PlanImage& image) const;
 
  private:

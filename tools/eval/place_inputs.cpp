@@ -25,7 +25,7 @@ class TaskBuilder {
     task_.variant = std::move(variant);
     task_.method = std::move(method);
   }
-  void AddSession(const std::string& name, const std::vector<PlaceRow>& rows, int unfamiliar) {
+  void AddSession(const std::string& name, const std::vector<PlaceRow>& rows, std::optional<int> unfamiliar) {
     std::vector<geom::Vec3d> positions;
     for (const PlaceRow& row : rows) {
       const bool valid = row.place.descriptor.scale > 0;
@@ -33,7 +33,7 @@ class TaskBuilder {
       task_.features.push_back(valid ? task_.method->Prepare(row.place) : PlaceMethod::Features{});
       task_.refused += valid ? 0 : 1;
     }
-    task_.unfamiliar += unfamiliar;
+    if (unfamiliar) task_.unfamiliar = task_.unfamiliar.value_or(0) + *unfamiliar;
     set_->AddSession(name, positions);
   }
   PlaceTask Take() {
@@ -68,7 +68,7 @@ std::vector<PlaceTask> TasksOfTables(const std::vector<std::string>& inputs) {
       builders.emplace_back(table.name, TaskBuilder(table.name, std::move(method)));
       at = builders.end() - 1;
     }
-    at->second.AddSession(table.file.string(), describe::ReadPlaceTable(table.file), 0);
+    at->second.AddSession(table.file.string(), describe::ReadPlaceTable(table.file), std::nullopt);
   }
   std::vector<PlaceTask> tasks;
   for (auto& [name, builder] : builders) tasks.push_back(builder.Take());

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct PlaceTask {
   std::shared_ptr<const describe::PlaceMethod> method;
   std::vector<describe::PlaceMethod::Features> features;  // per keyframe; empty: it has no descriptor
   int refused = 0;                                        // keyframes without one
-  int unfamiliar = 0;                                     // keyframes unlike what the descriptor was trained on
+  std::optional<int> unfamiliar;                          // keyframes unlike what the descriptor was trained on
 };
 
 struct PlaceArguments {

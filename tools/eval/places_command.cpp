@@ -111,8 +111,8 @@ std::string PlaceTable(const std::vector<VariantScore>& scores) {
     if (s.refused > 0) {
       out += fmt::format("{}: {} keyframes have no descriptor and count as missed.\n", s.variant, s.refused);
     }
-    if (s.unfamiliar > 0) {
-      out += fmt::format("{}: {} keyframes look unlike the places it was trained on.\n", s.variant, s.unfamiliar);
+    if (s.unfamiliar.value_or(0) > 0) {
+      out += fmt::format("{}: {} keyframes look unlike the places it was trained on.\n", s.variant, *s.unfamiliar);
     }
   }
   return out;
@@ -127,7 +127,7 @@ std::string PlaceJson(const std::vector<VariantScore>& scores) {
                     {"sessions", s.sessions},
                     {"keyframes", s.keyframes},
                     {"without_descriptor", s.refused},
-                    {"unlike_training", s.unfamiliar},
+                    {"unlike_training", s.unfamiliar ? Json(*s.unfamiliar) : Json()},
                     {"radii", std::move(radii)}});
   }
   return Json{{"descriptors", std::move(json)}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

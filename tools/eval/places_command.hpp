@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,8 @@ struct VariantScore {
   std::string variant;
   int sessions = 0;
   int keyframes = 0;
-  int refused = 0;     // keyframes without descriptor; they count as missed
-  int unfamiliar = 0;  // keyframes unlike what the descriptor was trained on; they count like all
+  int refused = 0;                // keyframes without descriptor; they count as missed
+  std::optional<int> unfamiliar;  // keyframes unlike what the descriptor was trained on, where that is known
   PlaceScore score;
 };
 

@@ -28,8 +28,8 @@ int RunReplay(const ReplayOptions& options) {
                  (options.dir / "lidar.pcap").string());
     }
     if (s.packets + s.packets_lost == 0) {
-      throw std::runtime_error(fmt::format("{} holds no UDP datagram to port {}", (options.dir / "lidar.pcap").string(),
-                                           fmt::join(kLidarPorts, " or ")));
+      throw std::runtime_error(fmt::format("{} holds no UDP datagram in one piece to port {}",
+                                           (options.dir / "lidar.pcap").string(), fmt::join(kLidarPorts, " or ")));
     }
     fmt::print(
         "agent {}: {} LiDAR packets, {} CAN frames, {} and {} lost, {:.1f} s of recording in {:.1f} s, {:.1f} times "

@@ -12,9 +12,19 @@ constexpr double kUnderStreet_m = 0.05;  // the floor lies that far under it
 constexpr double kParapet_m = 0.9;
 constexpr double kBesideStreet_m = 0.6;  // from the carriageway to a wall
 
-void AddWall(const Vec2d& a, const Vec2d& b, double a_low, double b_low, double high, TownMesh* mesh) {
-  Of(*mesh, Surface::kWall)
-      .AddQuad({a.x(), a.y(), a_low}, {b.x(), b.y(), b_low}, {b.x(), b.y(), high}, {a.x(), a.y(), high});
+// In pieces that can follow hills.
+void AddWall(const Vec2d& from, const Vec2d& to, double from_low, double to_low, double high, TownMesh* mesh) {
+  constexpr double kPiece_m = 10;
+  const double pieces = std::ceil((to - from).norm() / kPiece_m);
+  for (double k = 0; k < pieces; ++k) {
+    const double u = k / pieces;
+    const double v = (k + 1) / pieces;
+    const Vec2d a = from + u * (to - from);
+    const Vec2d b = from + v * (to - from);
+    Of(*mesh, Surface::kWall)
+        .AddQuad({a.x(), a.y(), from_low + u * (to_low - from_low)}, {b.x(), b.y(), from_low + v * (to_low - from_low)},
+                 {b.x(), b.y(), high}, {a.x(), a.y(), high});
+  }
 }
 
 // Where a line crosses the cellar's edge.
@@ -34,9 +44,13 @@ void AddTrenchWalls(const Ramp& ramp, const Cellar& cellar, TownMesh* mesh) {
     const Vec2d along = (line[i] - line[i - 1]).normalized();
     for (const double side : {-1.0, 1.0}) {
       const Vec2d aside = side * ramp.half_width_m * Vec2d(-along.y(), along.x());
-      const Vec2d a = line[i - 1] + aside;
-      const Vec2d b = line[i] + aside;
-      if (cellar.out.dot(a) < cellar.edge_m || cellar.out.dot(b) < cellar.edge_m) continue;  // under the square
+      Vec2d a = line[i - 1] + aside;
+      Vec2d b = line[i] + aside;
+      const double a_out_m = cellar.out.dot(a) - cellar.edge_m;
+      const double b_out_m = cellar.out.dot(b) - cellar.edge_m;
+      if (a_out_m <= 0 && b_out_m <= 0) continue;  // under the square
+      if (a_out_m < 0) a += a_out_m / (a_out_m - b_out_m) * (b - a);
+      if (b_out_m < 0) b += b_out_m / (b_out_m - a_out_m) * (a - b);
       if (cellar.Depth(a) < kUnderStreet_m && cellar.Depth(b) < kUnderStreet_m) continue;
       AddWall(a, b, -cellar.Depth(a) - kUnderStreet_m, -cellar.Depth(b) - kUnderStreet_m, kParapet_m, mesh);
     }

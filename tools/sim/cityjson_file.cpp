@@ -15,6 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::json;
 
+constexpr double kFarthest_m = 200'000;  // from the middle
+
 // How many lists lie around one surface, or -1 for what has none.
 int SurfaceDepth(const std::string& type) {
   if (type == "MultiSurface" || type == "CompositeSurface") return 1;
@@ -26,7 +28,7 @@ int SurfaceDepth(const std::string& type) {
 Vector3d ReadTriple(const json& triple) {
   if (!triple.is_array() || triple.size() != 3) throw std::runtime_error("a vertex is no list of three numbers");
   const Vector3d p(triple[0].get<double>(), triple[1].get<double>(), triple[2].get<double>());
-  if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e12) throw std::runtime_error("a coordinate is not finite");
+  if (!p.allFinite()) throw std::runtime_error("a coordinate is not finite");
   return p;
 }
 
@@ -53,7 +55,12 @@ std::vector<Vector3d> ReadVertices(const json& document) {
     throw std::runtime_error("its coordinates look like degrees; reproject it to metres");
   }
   const Vector3d middle((low.x() + high.x()) / 2, (low.y() + high.y()) / 2, 0);
-  for (Vector3d& p : vertices) p -= middle;
+  for (Vector3d& p : vertices) {
+    p -= middle;
+    if (!(p.cwiseAbs().maxCoeff() <= kFarthest_m)) {
+      throw std::runtime_error(fmt::format("its vertices reach over more than {:.0f} km", 2e-3 * kFarthest_m));
+    }
+  }
   return vertices;
 }
 
@@ -63,26 +70,38 @@ class GeometryReader {
       : vertices_(vertices), surfaces_(surfaces) {}
 
   void Read(const json& geometry) {
-    AddSurfaces(geometry.at("boundaries"), SurfaceDepth(geometry.at("type").get<std::string>()));
-    if (!geometry.contains("semantics")) return;
-    const json& semantics = geometry["semantics"];
-    std::size_t next = 0;
-    MarkGround(semantics.at("surfaces"), semantics.at("values"), &next);
+    const int depth = SurfaceDepth(geometry.at("type").get<std::string>());
+    const json* kinds = nullptr;
+    const json* values = nullptr;
+    if (geometry.contains("semantics") && geometry["semantics"].is_object()) {
+      kinds = &geometry["semantics"].at("surfaces");
+      values = &geometry["semantics"].at("values");
+    }
+    AddSurfaces(geometry.at("boundaries"), kinds, values, depth);
   }
 
  private:
-  void AddSurfaces(const json& boundaries, int depth) {
+  // `values` are nested like the boundaries and name one of `kinds` for each surface; a null, or what is missing,
+  // stands for a surface or a whole shell without semantics.
+  void AddSurfaces(const json& boundaries, const json* kinds, const json* values, int depth) {
     if (!boundaries.is_array()) throw std::runtime_error("its boundaries are not nested as its type wants");
-    for (const json& part : boundaries) {
+    for (std::size_t i = 0; i < boundaries.size(); ++i) {
+      const json* value = values != nullptr && values->is_array() && i < values->size() ? &(*values)[i] : nullptr;
       if (depth > 1) {
-        AddSurfaces(part, depth - 1);
-      } else {
-        AddSurface(part);
+        AddSurfaces(boundaries[i], kinds, value, depth - 1);
+        continue;
       }
+      CitySurface surface = ReadSurface(boundaries[i]);
+      if (surface.rings.empty()) continue;
+      if (value != nullptr && value->is_number_unsigned()) {
+        surface.ground = kinds->at(value->get<std::size_t>()).value("type", "") == "GroundSurface";
+      }
+      surfaces_->push_back(std::move(surface));
     }
   }
 
-  void AddSurface(const json& rings) {
+  // Without rings when its outer one has no area.
+  [[nodiscard]] CitySurface ReadSurface(const json& rings) const {
     CitySurface surface;
     if (!rings.is_array()) throw std::runtime_error("its boundaries are not nested as its type wants");
     for (const json& indices : rings) {
@@ -91,27 +110,15 @@ class GeometryReader {
       for (const json& index : indices) {
         const auto i = index.is_number_unsigned() ? index.get<std::size_t>() : vertices_.size();
         if (i >= vertices_.size()) {
-          throw std::runtime_error(fmt::format("it refers to vertex {} of {}", index.dump(), vertices_.size()));
+          throw std::runtime_error(fmt::format("it refers to vertex {} of {}",
+                                               index.is_number() ? index.dump() : index.type_name(), vertices_.size()));
         }
         ring.push_back(vertices_[i]);
       }
+      if (ring.size() < 3 && surface.rings.empty()) return surface;
       if (ring.size() >= 3) surface.rings.push_back(std::move(ring));
     }
-    surfaces_->push_back(std::move(surface));
-  }
-
-  // `values` are nested like the surfaces; null stands for a surface, or a whole shell, without semantics.
-  void MarkGround(const json& kinds, const json& values, std::size_t* next) {
-    for (const json& value : values) {
-      if (value.is_array()) {
-        MarkGround(kinds, value, next);
-        continue;
-      }
-      if (value.is_number_unsigned() && *next < surfaces_->size()) {
-        (*surfaces_)[*next].ground = kinds.at(value.get<std::size_t>()).value("type", "") == "GroundSurface";
-      }
-      ++*next;
-    }
+    return surface;
   }
 
   const std::vector<Vector3d>& vertices_;
@@ -143,7 +150,6 @@ CityObject ReadObject(const std::string& id, const json& object, const std::vect
   if (best == nullptr) return out;
   out.lod = LodOf(*best);
   GeometryReader(vertices, &out.surfaces).Read(*best);
-  std::erase_if(out.surfaces, [](const CitySurface& surface) { return surface.rings.empty(); });
   return out;
 }
 

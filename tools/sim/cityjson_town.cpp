@@ -14,6 +14,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/sim/cityjson_file.hpp"
@@ -25,9 +26,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Parts of function names, in the languages of the data sets at hand.
-constexpr std::array<const char*, 12> kNotDriven{"foot", "side",    "cycle", "pedestrian", "parking", "stair",
-                                                 "voet", "parkeer", "fiets", "trap",       "ov-baan", "spoor"};
+// How words of a road's function begin that is not for cars, in the languages of the data sets at hand.
+constexpr std::array<std::string_view, 11> kNotDriven{"foot", "sidewalk", "cycle", "pedestrian", "parking", "stair",
+                                                      "voet", "parkeer",  "fiets", "trap",       "spoor"};
 
 // Positive and the same everywhere: FNV-1a.
 std::int64_t IdOf(const std::string& text) {
@@ -167,11 +168,17 @@ void AddBuilding(const CityObject& object, Town* town) {
 }
 
 bool IsDriven(const CityObject& road) {
-  std::string function = road.function;
-  std::transform(function.begin(), function.end(), function.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::none_of(kNotDriven.begin(), kNotDriven.end(),
-                      [&](const char* word) { return function.find(word) != std::string::npos; });
+  std::string word;
+  for (const char c : road.function + " ") {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    const auto begins = [&](std::string_view start) { return word.starts_with(start); };
+    if (std::any_of(kNotDriven.begin(), kNotDriven.end(), begins)) return false;
+    word.clear();
+  }
+  return true;
 }
 
 }  // namespace

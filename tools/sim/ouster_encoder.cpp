@@ -50,14 +50,17 @@ std::vector<std::uint8_t> EncodeOuster(const LidarSimulator& lidar, std::int64_t
   const std::size_t columns_bytes =
       static_cast<std::size_t>(kOusterColumns) * (kColumnHeaderBytes + beams * kPixelBytes);
   std::vector<std::uint8_t> bytes(2 * kHeaderBytes + columns_bytes);
-  const auto frame = static_cast<std::uint16_t>(index * kOusterColumns / ColumnsPerTurn(lidar.model()));
+  // A frame begins where the columns' count does.
+  const std::int64_t first = index * kOusterColumns;
+  const std::int64_t per_turn = ColumnsPerTurn(lidar.model());
+  const auto frame = static_cast<std::uint16_t>((first + MeasurementId(lidar, 0)) / per_turn);
   ByteWriter header(std::span<std::uint8_t>(bytes).first(kHeaderBytes));
   header.Little(kLidarPacket);
   header.Little(frame);
   ByteWriter w(std::span<std::uint8_t>(bytes).subspan(kHeaderBytes, columns_bytes));
   std::vector<LidarReturn> column_returns;
   for (std::int64_t i = 0; i < kOusterColumns; ++i) {
-    const std::int64_t column = index * kOusterColumns + i;
+    const std::int64_t column = first + i;
     w.Little(static_cast<std::uint64_t>(lidar.PastHour_ns(column)));
     w.Little(MeasurementId(lidar, column));
     w.Little(kValidColumn);

@@ -103,6 +103,10 @@ std::int64_t PacketColumns(const LidarModel& model, bool dual) {
   return VelodyneColumns(model, dual);
 }
 
+double PacketBytesPerBeam(const LidarModel& model) {
+  return IsOuster(model) ? 12.4 : 3.3;
+}
+
 DriveCounts WriteRecording(const RayCaster& caster, const VehicleMotion& motion, const Traffic* traffic,
                            const DriveSpec& spec, const std::filesystem::path& dir,
                            const std::function<void(double)>& progress) {

@@ -35,6 +35,8 @@ struct DriveCounts {
 
 // Columns in a packet of this LiDAR; 0 when its packets are not written.
 std::int64_t PacketColumns(const LidarModel& model, bool dual);
+// What one beam of one column takes in the capture file, headers shared out.
+double PacketBytesPerBeam(const LidarModel& model);
 
 // Writes into the existing folder `dir`. `progress` gets shares from 0 to 1. Throws std::runtime_error when a file
 // cannot be written.

@@ -102,10 +102,14 @@ TownPlan ReadTownPlan(const json& object, const std::string& where) {
     throw std::runtime_error(fmt::format("{}: size_m {} is outside 300..10000", where, plan.size_m));
   }
   if (fields.Has("cellar_m")) plan.cellar_m = fields.Get<double>("cellar_m");
-  if (plan.cellar_m != 0 && (!(plan.cellar_m >= 3.3) || !(plan.cellar_m <= 8))) {
-    throw std::runtime_error(fmt::format("{}: cellar_m {} is neither 0 nor in 3.3..8", where, plan.cellar_m));
+  if (plan.cellar_m != 0 && (!(plan.cellar_m >= 3.3) || !(plan.cellar_m <= 4.5))) {
+    throw std::runtime_error(fmt::format("{}: cellar_m {} is neither 0 nor in 3.3..4.5", where, plan.cellar_m));
   }
-  (void)StyleByName(plan.style);
+  const TownStyle& style = StyleByName(plan.style);
+  if (plan.cellar_m != 0 && (style.bend_m != 0 || style.swirl_m != 0 || style.highways)) {
+    throw std::runtime_error(fmt::format(
+        "{}: streets of the style {} are not straight enough for a cellar; plaza's are", where, plan.style));
+  }
   return plan;
 }
 

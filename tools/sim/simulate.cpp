@@ -236,7 +236,7 @@ void CheckDiskSpace(const std::filesystem::path& folder, const std::vector<LaneP
   double bytes_per_m = 0;
   switch (options.layout) {
     case Layout::kWire:
-      bytes_per_m = 10 * shots * 3.3 / 8 * (options.dual_return ? 2 : 1);
+      bytes_per_m = 10 * shots * PacketBytesPerBeam(lidar) / 8 * (options.dual_return ? 2 : 1);
       break;
     case Layout::kSubmaps:
       bytes_per_m = 70'000 / 5.0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double kCell_m = 0.5;
 constexpr double kShortestDeadEnd_m = 12;
-constexpr double kNode_m = 4;  // between the points of a line
+constexpr double kNode_m = 4;         // between the points of a line
+constexpr double kOneJunction_m = 6;  // junctions this near to each other are one
+constexpr double kWidestSquare_m = 200;
 
 // Cells about the areas' box, with an empty margin so that every set cell has eight neighbours.
 class Raster {
@@ -81,12 +84,12 @@ class Raster {
     std::vector<char> seen(set_.size(), 0);
     for (std::size_t seed = 0; seed < set_.size(); ++seed) {
       if (set_[seed] != 0 || seen[seed] != 0) continue;
-      std::vector<std::size_t> hole{seed};
+      std::vector<std::uint32_t> hole{static_cast<std::uint32_t>(seed)};
       seen[seed] = 1;
       const auto offer = [&](std::size_t cell) {
         if (set_[cell] != 0 || seen[cell] != 0) return;
         seen[cell] = 1;
-        hole.push_back(cell);
+        hole.push_back(static_cast<std::uint32_t>(cell));
       };
       const auto columns = static_cast<std::size_t>(columns_);
       for (std::size_t i = 0; i < hole.size(); ++i) {
@@ -194,6 +197,10 @@ struct Chain {
   std::vector<int> cells;
   bool dead_end = false;
 };
+
+bool IsShort(const Chain& chain) {
+  return static_cast<double>(chain.cells.size()) * kCell_m <= kOneJunction_m;
+}
 
 // All chains of a thinned raster; `junction` gets the group of each cell where three or more meet.
 std::vector<Chain> TraceChains(const Raster& lines, std::map<int, int>* junction) {
@@ -305,8 +312,7 @@ class Junctions {
     for (const Chain& chain : chains) {
       const auto from = group_.find(chain.cells.front());
       const auto to = group_.find(chain.cells.back());
-      if (from == group_.end() || to == group_.end() || static_cast<double>(chain.cells.size()) * kCell_m > kOne_m)
-        continue;
+      if (from == group_.end() || to == group_.end() || !IsShort(chain)) continue;
       const auto [low, high] = std::minmax({from->second, to->second});
       for (auto& [cell, group] : group_) group = group == high ? low : group;
     }
@@ -328,8 +334,6 @@ class Junctions {
   }
 
  private:
-  static constexpr double kOne_m = 6;
-
   const Raster& raster_;
   std::map<int, int> group_;
   std::map<int, std::pair<Vec2d, int>> middle_;
@@ -344,6 +348,10 @@ std::vector<Road> StreetLines(const std::vector<Area>& carriageways) {
   Raster raster(carriageways);
   raster.FillHoles(static_cast<std::size_t>(kIsland_m2 / (kCell_m * kCell_m)));
   const std::vector<float> to_edge = DistanceToEdge(raster);
+  const auto widest = std::max_element(to_edge.begin(), to_edge.end());
+  if (widest != to_edge.end() && static_cast<double>(*widest) > kWidestSquare_m / 2) {
+    throw std::runtime_error(fmt::format("an area of its streets is wider than {} m: no street", kWidestSquare_m));
+  }
   Thin(&raster);
   std::map<int, int> cells_of_junctions;
   const std::vector<Chain> chains = TraceStreets(&raster, &cells_of_junctions);
@@ -358,7 +366,7 @@ std::vector<Road> StreetLines(const std::vector<Area>& carriageways) {
     }
     const std::int64_t from = junctions.Node(chain.cells.front());
     const std::int64_t to = junctions.Node(chain.cells.back());
-    if (from == to && Length(stairs) < 2 * kNode_m) continue;
+    if (from == to && IsShort(chain)) continue;  // within one junction
     std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
     const auto half_width_m = static_cast<double>(widths[widths.size() / 2]);
     Road road;

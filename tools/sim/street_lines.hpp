@@ -14,7 +14,8 @@ using Area = std::vector<Polyline>;
 // The middle lines of all areas together, cut at junctions, with their median width. Areas that touch are one. Dead
 // ends shorter than 12 m are corners of junctions and are left out. Ids from 1. Method: a raster of half a metre,
 // thinned to lines one cell wide (Zhang and Suen, 1984). Cost: cells times half of the widest street in cells; throws
-// std::runtime_error when the areas' box has more than 100 million cells, 25 square kilometres.
+// std::runtime_error when the areas' box has more than 100 million cells, 25 square kilometres, or an area is wider
+// than 200 m.
 std::vector<Road> StreetLines(const std::vector<Area>& carriageways);
 
 }  // namespace mapweld::sim

@@ -21,7 +21,7 @@ std::string House(const std::string& version, const std::string& lod, const std:
          R"("translate":[85000,447000,-1]},"CityObjects":{"house":{"type":"Building","geometry":[{"type":"Solid",)" +
          R"("lod":)" + lod + R"(,"boundaries":[[[[0,3,2,1]],[[0,1,5,4]],[[1,2,6,9,5]],[[2,3,7,6]],[[3,0,4,8,7]],)" +
          R"([[4,5,9,8]],[[8,9,6,7]]]])" + semantics + R"(}]},"way":{"type":"Road","attributes":)" +
-         R"({"function":"carriageway"},"geometry":[{"type":"MultiSurface","lod":)" + lod +
+         R"({"function":"Residential street"},"geometry":[{"type":"MultiSurface","lod":)" + lod +
          R"(,"boundaries":[[[10,11,12,13]]]}]},"pavement":{"type":"Road","attributes":{"function":"Footpath"},)" +
          R"("geometry":[{"type":"MultiSurface","lod":)" + lod + R"(,"boundaries":[[[13,12,1]]]}]}},"vertices":[)" +
          "[40000,14000,0],[50000,14000,0],[50000,22000,0],[40000,22000,0],"

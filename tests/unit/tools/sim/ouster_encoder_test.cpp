@@ -76,6 +76,12 @@ TEST_F(OusterEncoder, BeginsATurnBackwardAndKeepsItsColumnsInPlace) {
   EXPECT_EQ(id(32), 0);
   EXPECT_EQ(id(1), 528);
   EXPECT_EQ(id(64 * 6000), 512) << "after ten minutes the same";
+  const auto frame = [&](std::int64_t packet) { return EncodeOuster(lidar_, packet, &returns)[2]; };
+  EXPECT_EQ(frame(0), 0);
+  EXPECT_EQ(frame(31), 0);
+  EXPECT_EQ(frame(32), 1) << "a frame begins with column 0";
+  EXPECT_EQ(frame(95), 1);
+  EXPECT_EQ(frame(96), 2);
 }
 
 }  // namespace

@@ -60,14 +60,20 @@ TEST_F(ScenarioFile, MayInventItsTown) {
   EXPECT_EQ(plan.style, "suburb");
   EXPECT_EQ(plan.size_m, 900);
   EXPECT_EQ(plan.seed, 7U);
+  EXPECT_EQ(plan.cellar_m, 0);
   std::string text = kInvented;
   text.replace(text.find("suburb"), 6, "desert");
   EXPECT_THAT(MessageOf([&] { (void)Read(text); }), HasSubstr("no style of town 'desert'"));
+  text = kInvented;
+  text.replace(text.find("900"), 3, R"(900,"cellar_m":2)");
+  EXPECT_THAT(MessageOf([&] { (void)Read(text); }), HasSubstr("cellar_m 2 is neither 0 nor in 3.3..4.5"));
+  text.replace(text.find("\"cellar_m\":2"), 12, "\"cellar_m\":4");
+  EXPECT_THAT(MessageOf([&] { (void)Read(text); }), HasSubstr("suburb are not straight enough"));
 }
 
 TEST(Scenarios, ComeWithTheProgramTogetherWithTheirTowns) {
   for (const auto& entry : std::filesystem::directory_iterator(DataFolder())) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" || entry.path().stem().has_extension()) continue;  // NAME.city.json: a town
     const Scenario scenario = ReadScenario(ScenarioByName(entry.path().stem().string()));
     const auto* file = std::get_if<std::filesystem::path>(&scenario.town);
     EXPECT_TRUE(file == nullptr || std::filesystem::exists(*file)) << entry.path();

@@ -133,15 +133,28 @@ TEST_F(Simulation, WritesCloudsInTheLayoutsOfDataSets) {
   EXPECT_EQ(std::filesystem::file_size(folder_ / "clouds/vehicle_2/000001_pose6d.npy"), 128U + 48U);
 }
 
+TEST_F(Simulation, WritesThePacketsOfAnOs1WithItsMetadata) {
+  SimOptions options = Options("os1", 0);
+  options.vehicles = {2};
+  options.seconds = 1;
+  options.lidar = "os1-64";
+  EXPECT_EQ(Run(options).vehicles.at(0).counts.packets, 640) << "16 of 1024 columns each, ten turns";
+  const auto metadata = nlohmann::json::parse(ReadText(folder_ / "os1/vehicle_2/lidar_metadata.json"));
+  EXPECT_EQ(metadata.at("beam_intrinsics").at("beam_altitude_angles").size(), 64U);
+  EXPECT_EQ(metadata.at("config_params").at("lidar_mode"), "1024x10");
+}
+
 TEST_F(Simulation, RefusesASensorThatItCannotBeBeforeAnyWork) {
   SimOptions options = Options("r", 0);
   options.lidar = "vlp17";
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("known are vlp16, hdl32e"));
   options.lidar = "hdl64e";
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout kitti"));
+  options.lidar = "os1-64";
+  options.dual_return = true;
+  EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("dual return os1-64 packets are not written"));
   options.lidar = "vlp16";
   options.layout = Layout::kKitti;
-  options.dual_return = true;
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("choose --layout wire"));
   options.vibration_mps2 = -1;
   EXPECT_THAT(MessageOf([&] { (void)Run(options); }), HasSubstr("not between 0 and 20"));
