@@ -52,6 +52,8 @@ TEST(CityJsonTown, BuildsAHouseAsHighAsItsRidge) {
     for (const Vec2d& p : house.footprint) west = std::min(west, p.x());
     EXPECT_NEAR(west, -10, 1e-6);
   }
+  const std::string whole_shell_unknown = R"(,"semantics":{"surfaces":[{"type":"GroundSurface"}],"values":[null]})";
+  EXPECT_NEAR(SignedArea(Read(House("2.0", "2", whole_shell_unknown)).buildings.front().footprint), 80, 1e-6);
   EXPECT_EQ(Read(House("1.0", "1", "")).buildings.front().roof, RoofShape::kFlat) << "level of detail 1: boxes";
 }
 
@@ -95,6 +97,10 @@ TEST(CityJsonTown, SaysWhatIsWrongWithAFile) {
   EXPECT_THAT(with("2.0", "3.0"), HasSubstr("version 3.0"));
   EXPECT_THAT(with("[0,3,2,1]", "[0,3,2,99]"), AllOf(HasSubstr("'house'"), HasSubstr("vertex 99 of 14")));
   EXPECT_THAT(with("[0,3,2,1]", "[0,3,2,-1]"), HasSubstr("vertex -1 of 14"));
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  EXPECT_THAT(with("[0,3,2,1]", "[0,3,2," + deep + "]"), HasSubstr("vertex array of 14"));
+  EXPECT_THAT(message(House("2.0", "2", R"(,"semantics":{"surfaces":[],"values":)" + deep + "}")), testing::IsEmpty());
+  EXPECT_THAT(with("[100000,0,0]", "[1e12,0,0]"), HasSubstr("reach over more than 400 km"));
   EXPECT_THAT(with("[[[10,11,12,13]]]", "[10]"), AllOf(HasSubstr("'way'"), HasSubstr("nested")));
   EXPECT_THAT(with("[0.001,0.001,0.001]", "[1e-9,1e-9,1e-9]"), testing::Not(HasSubstr("degrees")));
   EXPECT_THAT(message(R"({"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[[4.1,52,0],[4.2,52.1,0]]})"),
