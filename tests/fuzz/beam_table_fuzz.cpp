@@ -19,14 +19,10 @@ void RequireGood(const lidar::BeamTable& table) {
 }  // namespace
 
 std::vector<Bytes> Seeds() {
-  std::vector<Bytes> out;
-  for (const std::string_view text :
-       {std::string_view("Laser id,Elevation,Azimuth\n1,15.02,0.1\n2,14.0,-0.25\n3,13e0,0\n4,-1,0\n"),
-        std::string_view(R"({"lidar_mode":"1024x10","beam_altitude_angles":[16.6,-1.5e1],"beam_azimuth_angles":[3,-3],)"
-                         R"("lidar_origin_to_beam_origin_mm":15.8,"udp_profile_lidar":"RNG15_RFL8_NIR8"})")}) {
-    out.emplace_back(text.begin(), text.end());
-  }
-  return out;
+  return TextSeeds(
+      {std::string_view("Laser id,Elevation,Azimuth\n1,15.02,0.1\n2,14.0,-0.25\n3,13e0,0\n4,-1,0\n"),
+       std::string_view(R"({"lidar_mode":"1024x10","beam_altitude_angles":[16.6,-1.5e1],"beam_azimuth_angles":[3,-3],)"
+                        R"("lidar_origin_to_beam_origin_mm":15.8,"udp_profile_lidar":"RNG15_RFL8_NIR8"})")});
 }
 
 }  // namespace mapweld::fuzz

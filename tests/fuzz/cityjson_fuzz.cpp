@@ -9,17 +9,13 @@
 namespace mapweld::fuzz {
 
 std::vector<Bytes> Seeds() {
-  std::vector<Bytes> out;
-  for (const std::string_view text :
-       {R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.01,0.01,0.01],"translate":[8e4,4e5,-1]},)"
-        R"("CityObjects":{"a":{"type":"Building","geometry":[{"type":"Solid","lod":"1.2","boundaries":)"
-        R"([[[[0,1,2],[3,4,5]],[[0,3,4]]]],"semantics":{"surfaces":[{"type":"GroundSurface"}],"values":[[0,null]]}}]},)"
-        R"("b":{"type":"Road","attributes":{"function":"rijbaan"},"geometry":[{"type":"MultiSurface","lod":1,)"
-        R"("boundaries":[[[0,1,2]]]}]}},"vertices":[[0,0,0],[900,0,0],[900,800,0],[0,0,9],[1,0,9],[1,1,9]]})",
-        R"({"type":"CityJSON","version":"1.0","CityObjects":{},"vertices":[[4.5,52.1,0],[4.6,52.2,1e300]]})"}) {
-    out.emplace_back(text.begin(), text.end());
-  }
-  return out;
+  return TextSeeds(
+      {R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.01,0.01,0.01],"translate":[8e4,4e5,-1]},)"
+       R"("CityObjects":{"a":{"type":"Building","geometry":[{"type":"Solid","lod":"1.2","boundaries":)"
+       R"([[[[0,1,2],[3,4,5]],[[0,3,4]]]],"semantics":{"surfaces":[{"type":"GroundSurface"}],"values":[[0,null]]}}]},)"
+       R"("b":{"type":"Road","attributes":{"function":"rijbaan"},"geometry":[{"type":"MultiSurface","lod":1,)"
+       R"("boundaries":[[[0,1,2]]]}]}},"vertices":[[0,0,0],[900,0,0],[900,800,0],[0,0,9],[1,0,9],[1,1,9]]})",
+       R"({"type":"CityJSON","version":"1.0","CityObjects":{},"vertices":[[4.5,52.1,0],[4.6,52.2,1e300]]})"});
 }
 
 }  // namespace mapweld::fuzz

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace mapweld::fuzz {
@@ -15,6 +17,13 @@ using Bytes = std::vector<std::uint8_t>;
 
 // Good inputs to start from.
 std::vector<Bytes> Seeds();
+
+// For decoders of text.
+inline std::vector<Bytes> TextSeeds(std::initializer_list<std::string_view> texts) {
+  std::vector<Bytes> seeds;
+  for (const std::string_view text : texts) seeds.emplace_back(text.begin(), text.end());
+  return seeds;
+}
 
 // A promise of the decoder that must hold for any input.
 inline void Require(bool promise, const char* text, const char* file, int line) {

@@ -10,15 +10,11 @@
 namespace mapweld::fuzz {
 
 std::vector<Bytes> Seeds() {
-  std::vector<Bytes> out;
-  for (const std::string_view text :
-       {"VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1.5 2e-3 -3 0.5 0.5 0.5 0.5\nFIX 0\n"
-        "EDGE_SE3:QUAT 0 1 1 2 3 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4\n",
-        "# remark\r\nPARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\r\nVERTEX_SE3:QUAT -7 nan 0 0 0 0 0 1\r\n\r\nFIX 1 2\r\n",
-        "EDGE_SE3:QUAT 3 3 inf 0 0 0 0 0 0 1e308 0 0 0 0 0 1 0 0 0 0 1 0 0 0 -4 0 0 4 0 1e999"}) {
-    out.emplace_back(text.begin(), text.end());
-  }
-  return out;
+  return TextSeeds(
+      {"VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1.5 2e-3 -3 0.5 0.5 0.5 0.5\nFIX 0\n"
+       "EDGE_SE3:QUAT 0 1 1 2 3 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4\n",
+       "# remark\r\nPARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\r\nVERTEX_SE3:QUAT -7 nan 0 0 0 0 0 1\r\n\r\nFIX 1 2\r\n",
+       "EDGE_SE3:QUAT 3 3 inf 0 0 0 0 0 0 1e308 0 0 0 0 0 1 0 0 0 0 1 0 0 0 -4 0 0 4 0 1e999"});
 }
 
 }  // namespace mapweld::fuzz

@@ -101,12 +101,6 @@ bool InTrench(const Ramp& ramp, const Cellar& cellar, const Vec2d& p) {
   return false;
 }
 
-void LowerIntoCellar(const Cellar& cellar, Mesh* mesh) {
-  for (Eigen::Vector3f& vertex : mesh->vertices) {
-    vertex.z() -= static_cast<float>(cellar.Depth(vertex.head<2>().cast<double>()));
-  }
-}
-
 void AddCellar(const Town& town, TownMesh* mesh) {
   constexpr double kPiece_m = 10;
   const Cellar& cellar = *town.cellar;

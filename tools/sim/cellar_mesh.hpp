@@ -20,9 +20,6 @@ std::vector<Ramp> RampsOf(const Town& town);
 // True in a trench, where the ground is open.
 bool InTrench(const Ramp& ramp, const Cellar& cellar, const Vec2d& p);
 
-// Streets and passages below are built at z = 0: down to where they run.
-void LowerIntoCellar(const Cellar& cellar, Mesh* mesh);
-
 // Floor and ceiling in pieces of 10 m, for single precision's sake; walls and lintels.
 void AddCellar(const Town& town, TownMesh* mesh);
 

@@ -43,19 +43,11 @@ Vec2d Relief::StreetSlope(const Vec2d& p) const {
 }
 
 void Relief::Lift(TownMesh* mesh) const {
-  for (Mesh& kind : *mesh) {
-    for (Eigen::Vector3f& vertex : kind.vertices) {
-      vertex.z() += static_cast<float>(Height(vertex.head<2>().cast<double>()));
-    }
-  }
+  for (Mesh& kind : *mesh) kind.Raise([this](const Vec2d& p) { return Height(p); });
 }
 
 void Relief::LiftOntoStreet(TownMesh* mesh) const {
-  for (Mesh& kind : *mesh) {
-    for (Eigen::Vector3f& vertex : kind.vertices) {
-      vertex.z() += static_cast<float>(StreetHeight(vertex.head<2>().cast<double>()));
-    }
-  }
+  for (Mesh& kind : *mesh) kind.Raise([this](const Vec2d& p) { return StreetHeight(p); });
 }
 
 }  // namespace mapweld::sim

@@ -75,6 +75,11 @@ Mesh RoadSurface(const Road& road, const Sight& sight, bool is_ramp) {
   return surface;
 }
 
+// Streets and passages below are built at z = 0: down to where they run.
+void LowerIntoCellar(const Cellar& cellar, Mesh* mesh) {
+  mesh->Raise([&](const Vec2d& p) { return -cellar.Depth(p); });
+}
+
 void AddRoads(const Town& town, const Sight& sight, TownMesh& mesh) {
   const std::vector<Ramp> ramps = RampsOf(town);
   for (Road road : town.roads) {

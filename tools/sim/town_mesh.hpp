@@ -26,6 +26,11 @@ struct Mesh {
   void Append(const Mesh& other);
   // A horizontal face over a counter-clockwise polygon.
   void AddFace(const Polyline& base, double z);
+  // Every vertex at (x, y) by by_m(Vec2d(x, y)).
+  template <class Height>
+  void Raise(const Height& by_m) {
+    for (Eigen::Vector3f& vertex : vertices) vertex.z() += static_cast<float>(by_m(vertex.head<2>().cast<double>()));
+  }
 };
 
 using TownMesh = std::array<Mesh, kSurfaces>;

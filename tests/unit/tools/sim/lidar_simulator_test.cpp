@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/unit/tools/sim/hall.hpp"
 #include "tools/sim/velodyne_encoder.hpp"
 
 namespace mapweld::sim {
@@ -42,19 +43,6 @@ std::vector<Point> Decode(const std::array<std::uint8_t, 1206>& bytes) {
                       elevation[laser]});
   }
   return points;
-}
-
-// Four walls, far enough apart to be driven through, and a floor.
-TownMesh Hall() {
-  TownMesh mesh;
-  Of(mesh, Surface::kWall).AddWalls({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, -1, 60);
-  Of(mesh, Surface::kRoad).AddFace({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, 0);
-  return mesh;
-}
-
-double DistanceToHall(const geom::Vec3d& p) {
-  return std::min(
-      {std::abs(p.x() + 40), std::abs(p.x() - 100), std::abs(p.y() + 20), std::abs(p.y() - 30), std::abs(p.z())});
 }
 
 class Lidar : public testing::Test {

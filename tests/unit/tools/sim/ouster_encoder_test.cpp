@@ -8,24 +8,12 @@
 #include <memory>
 
 #include "drivers/lidar/ouster_codec.hpp"
+#include "tests/unit/tools/sim/hall.hpp"
 
 namespace mapweld::sim {
 namespace {
 
 constexpr std::int64_t kStart_ns = 601'000'000'000;
-
-// Four walls and a floor; nothing about it is symmetric.
-TownMesh Hall() {
-  TownMesh mesh;
-  Of(mesh, Surface::kWall).AddWalls({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, -1, 60);
-  Of(mesh, Surface::kRoad).AddFace({{-40, -20}, {100, -20}, {100, 30}, {-40, 30}}, 0);
-  return mesh;
-}
-
-double DistanceToHall(const geom::Vec3d& p) {
-  return std::min(
-      {std::abs(p.x() + 40), std::abs(p.x() - 100), std::abs(p.y() + 20), std::abs(p.y() - 30), std::abs(p.z())});
-}
 
 class OusterEncoder : public testing::Test {
  protected:

@@ -65,7 +65,10 @@ TEST(PathTown, ReadsTumTrajectoriesThatMeetInOneFrame) {
 
 TEST(PathTown, SaysWhatIsMissingAndWhatIsWrong) {
   const TestFolder folder;
-  EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }), testing::HasSubstr("poses/*.txt"));
+  EXPECT_THAT(MessageOf([&] {
+                (void)BuildPathTown({folder / "", {"00"}}, 1);
+              }),
+              testing::HasSubstr("put the ground truth (KITTI: poses/*.txt, NCLT: as TUM) into that folder"));
   WriteText(folder / "00.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
   EXPECT_THAT(MessageOf([&] { (void)BuildPathTown({folder / "", {"00"}}, 1); }), testing::HasSubstr("row 1"));
   WriteText(folder / "00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
